@@ -32,13 +32,7 @@ MOST_LEVELS = 5000
 
 
 def parse_levels(text: str) -> NDArray[np.float64]:
-    """Parse levels [m] from ``first:step:last``, or from several levels separated by commas.
-
-    Raises
-    ------
-    UsageError
-        The text has neither form, the levels do not increase, or there are too many levels.
-    """
+    """Parse levels [m] from ``first:step:last``, or from several levels separated by commas."""
     given, wanted = text[:40], "write FIRST:STEP:LAST in metres, such as 0:20:1500, or 50,100,250"
     by_step = text.count(":") == 2
     try:
@@ -56,13 +50,7 @@ def parse_levels(text: str) -> NDArray[np.float64]:
 
 
 def check_levels(given: Sequence[float] | NDArray[np.float64]) -> NDArray[np.float64]:
-    """Check levels [m] and return them as an array.
-
-    Raises
-    ------
-    UsageError
-        The levels do not increase, or a level is above the sea surface.
-    """
+    """Check that levels [m] increase from the sea surface, and return them as an array."""
     levels = np.asarray(given, np.float64)
     if levels.ndim != 1 or not levels.size or not (np.diff(levels, prepend=-np.inf) > 0.0).all():
         raise UsageError("--levels: the depths must increase, such as 50,100,250")
@@ -72,7 +60,6 @@ def check_levels(given: Sequence[float] | NDArray[np.float64]) -> NDArray[np.flo
 
 
 def _metres(part: str) -> float:
-    """Parse a length [m] with or without unit; raise QuantityError if it is invalid."""
     plain = "" if delimited.NUMBER.fullmatch(part.strip()) is None else " m"
     return parse_quantity(f"{part}{plain}", "length", usual_unit="m")
 
@@ -88,15 +75,8 @@ def grid_layout(
 ) -> netcdf.ResultLayout:
     """Return the layout of a gridded file.
 
-    Parameters
-    ----------
-    fields : field of each quantity, by the name of the quantity
-    levels : depths of the levels [m]
-    depths : depths of the line over time
-    inputs : names of the input files, each with its hash
-    names : name of the variable in the file, by the name of the quantity
-    averaged : averaging interval as text; None if no interval is given
-    cards : summary of each file that was read
+    `inputs` are the names and hashes of the input files, `names` the variables of the quantities,
+    and `averaged` is the averaging interval as text.
     """
     time = next(iter(fields.values())).samples.time
     title = str(depths.attributes.get("title", "mooring")).partition(": ")[0]
@@ -194,20 +174,7 @@ def write_grid(
     output: Path,
     shown: Callable[[Sequence[int]], Iterable[int]] = lambda each: each,
 ) -> None:
-    """Write a gridded file block by block.
-
-    The file gets its final name only when it is complete.
-
-    Parameters
-    ----------
-    names : name of the variable in the file, by the name of the quantity
-    shown : function that wraps the iteration over blocks of times, to show progress
-
-    Raises
-    ------
-    UsageError
-        The file cannot be written, for example because the disk is full.
-    """
+    """Write a gridded file block by block; `shown` wraps the iteration over the blocks."""
     time = next(iter(fields.values())).samples.time
     capitals = all(one.isupper() for one in names.values())
     deviation, flag = ("_SD", "_QC") if capitals else ("_sd", "_qc")

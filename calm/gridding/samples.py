@@ -49,13 +49,7 @@ class MooringDepths:
 
 
 def read_depths(path: Path) -> MooringDepths:
-    """Read the depths from a result file of `calm motion`.
-
-    Raises
-    ------
-    InputError
-        The file is not a result of `calm motion`, or contains no known depth.
-    """
+    """Read the depths from a result file of `calm motion`."""
     with opened(path) as dataset:
         return _understood(dataset, path)
 
@@ -98,8 +92,7 @@ def _understood(dataset: Dataset, path: Path) -> MooringDepths:
 ANOTHER_PLACE = 30.0
 """Difference between pressure [dbar] and depth [m] that indicates another instrument."""
 
-MOST = 5_000_000
-"""Maximum number of times written: one a second for two months."""
+MOST = 5_000_000  # maximum number of times written: one a second for two months
 
 
 @dataclass(frozen=True)
@@ -108,8 +101,7 @@ class Samples:
 
     Attributes
     ----------
-    time : (n,) increasing times
-    label : (s,) labels of the instruments
+    time, label : (n,) increasing times, and (s,) labels of the instruments
     depth, deviation : (n, s) depths of the instruments and their standard deviations [m]
     value : (n, s) values in the unit of the quantity; NaN if not measured
     """
@@ -124,15 +116,9 @@ class Samples:
 def common_times(
     depths: MooringDepths, series: Sequence[InstrumentSeries], step: np.timedelta64 | None
 ) -> Times:
-    """Choose the times of the field.
+    """Choose the times of the field, in the period in which both depths and values are known.
 
-    The times are those of the depths or, if a step is given, are equally spaced. They cover the
-    period in which both depths and values are known.
-
-    Raises
-    ------
-    UsageError
-        Depths and values do not overlap in time, or the step is longer than the overlap.
+    They are the times of the depths or, if a step is given, are equally spaced.
     """
     known = [one.time[np.isfinite(one.value)] for one in series]
     known = [one for one in known if len(one)]
@@ -165,19 +151,10 @@ def common_times(
 def gather(
     depths: MooringDepths, series: Sequence[InstrumentSeries], points: dict[int, int], time: Times
 ) -> Samples:
-    """Average the values around each time, and the depths at which the values were measured.
+    """Average the values around each time (n,), and the depths at which the values were measured.
 
-    Each value counts for the nearest time, if this time is within half a time step.
-
-    Parameters
-    ----------
-    points : mapping from the index of a series to the index of the point of the line
-    time : (n,) times from `common_times`
-
-    Raises
-    ------
-    UsageError
-        Two series belong to the same instrument.
+    Each value counts for the nearest time, if this time is within half a time step. `points` is the
+    point of the line for each series by index.
     """
     still = depths.places.still
     each = [(at, series[i].below) for i, at in points.items()]

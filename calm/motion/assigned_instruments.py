@@ -33,8 +33,7 @@ class AssignedInstruments:
     Attributes
     ----------
     text : new text of the file
-    assigned : one sentence for each instrument that was assigned to a part of the line
-    doubts : one sentence for each doubtful match and each instrument without a part
+    assigned, doubts : sentences on the assigned instruments, and on doubtful or missing matches
     """
 
     text: str
@@ -45,16 +44,8 @@ class AssignedInstruments:
 def assign_instruments(path: Path, list_of_instruments: Path) -> AssignedInstruments:
     """Copy serial numbers and clock errors from an instrument list to `deployed` of a mooring file.
 
-    Instruments are matched to parts of the line by name or serial number. Instruments without a
-    match are assigned by nominal depth, in order down the line. The rest of the file is unchanged.
-
-    Raises
-    ------
-    InputError
-        A file has mistakes, or the list has an unknown format.
-    UsageError
-        The mooring is a tow or has several legs, the order of the instruments is ambiguous, or the
-        YAML of the file cannot be edited automatically.
+    Instruments are matched to parts of the line by name or serial number, or else by nominal depth,
+    in order down the line. The rest of the file is unchanged.
     """
     mooring = load(path)
     refuse_all_but_moorings(mooring.file)

@@ -69,8 +69,7 @@ OF_MOTION: Mapping[str, tuple[tuple[str, ...], tuple[str, str, Attributes]]] = {
 """Dimensions besides time, unit, meaning and attributes of variables added to a batch result."""
 OF_CURRENTS = frozenset({"current_factor", "current_doubt", "plain_depth"})
 """Variables of `OF_MOTION` that need a measured current."""
-MEASURED, ESTIMATED, MISSING = 1, 8, 9
-"""Flags of depths, from the flag table of OceanSITES."""
+MEASURED, ESTIMATED, MISSING = 1, 8, 9  # flags of depths, from the flag table of OceanSITES
 FLAGGED = {"clamp_depth": ["clamp_depth_sd"], "depth_top": ["depth_sd"]}
 _OF_DOCUMENT = {
     "institution": "institution", "author": "creator_name", "email": "creator_email",
@@ -87,7 +86,7 @@ def solve_times(
 ) -> SolvedBlock:
     """Estimate the depths in the block of times that begins at `start`, ready to be written.
 
-    The smallest and the largest of these depths [m] are appended to `extent`.
+    The smallest and the largest depth [m] are appended to `extent`.
     """
     stop = start + BLOCK
     profiles, more = task.columns(start, stop)
@@ -103,8 +102,7 @@ def solve_times(
 def motion_layout(task: Task, record: MeasuredRecord) -> ResultLayout:
     """Return the layout of the result file: a batch result plus the estimates of motion.
 
-    The layout includes depth flags, serial numbers and archive attributes. The date of the file is
-    set only if SOURCE_DATE_EPOCH is set, so that equal inputs give equal bytes.
+    The date is set only if SOURCE_DATE_EPOCH is set, so that equal inputs give equal bytes.
     """
     layout, mooring, measured = layout_of(task.mooring, record), task.mooring, task.measured
     alone = task.common.inferred
@@ -174,9 +172,8 @@ def about(mooring: Design) -> Attributes:
 
 
 def depth_flags(one: MooringMeasurements, profiles: Profiles) -> dict[str, NDArray[np.int8]]:
-    """Return a flag for each depth: measured, estimated or missing.
-
-    A depth is flagged as measured if the point has a sensor with a valid pressure at that time.
+    """Return a flag for each depth; measured if the point has a sensor with a pressure at that
+    time.
     """
     clamps = profiles.clamp_depth.shape[1]
     depth = np.hstack([profiles.clamp_depth, profiles.depth_top])
@@ -190,14 +187,7 @@ def depth_flags(one: MooringMeasurements, profiles: Profiles) -> dict[str, NDArr
 def estimate_in_memory(
     task: Task, points: Sequence[int], workers: int | None = None
 ) -> tuple[Floats, Floats]:
-    """Estimate (n, m) depths of m points, and standard deviations [m], without writing a file.
-
-    Parameters
-    ----------
-    task : input of the estimate
-    points : indices of the m points
-    workers : number of threads
-    """
+    """Estimate (n, m) depths of m points, and standard deviations [m], without writing a file."""
     starts = range(0, len(task.measured.time), BLOCK)
 
     def one(start: int) -> tuple[Floats, Floats]:
@@ -211,17 +201,15 @@ def estimate_in_memory(
     return np.concatenate([each[0] for each in found]), np.concatenate([each[1] for each in found])
 
 
-BLOCK = 512
-"""Number of times that are estimated and written together."""
+BLOCK = 512  # number of times that are estimated and written together
 
 
 @dataclass(frozen=True)
 class Task:
-    """Input of the estimate of depths.
+    """Input of the estimate of depths, from the sensors in use.
 
-    `measured` contains only the sensors in use. `smoother` is the solution for the whole record, or
-    None if no currents were measured. `faults` are the diagnosed faults, or None if the diagnosis
-    has not been made.
+    `smoother` is the solution for the whole record, or None if no currents were measured. `faults`
+    are the diagnosed faults, or None before the diagnosis.
     """
 
     mooring: Design
@@ -233,10 +221,7 @@ class Task:
     def columns(self, start: int, stop: int) -> tuple[Profiles, dict[str, NDArray[np.float64]]]:
         """Estimate the line at the times from `start` to `stop`, in the most likely currents.
 
-        Returns
-        -------
-        The profiles with the estimated depths, and a dictionary with `clamp_depth_sd`, `depth_sd`,
-        `residual` and, for measured currents, `current_factor`, `current_doubt` and `plain_depth`.
+        Return the profiles, and further columns, by the names of `OF_MOTION`.
         """
         times, smoother = slice(start, stop), self.smoother
         one = self.measured.at(times)
@@ -292,10 +277,9 @@ class Task:
 def without_current(
     profiles: Profiles, lost: NDArray[np.bool_], false: NDArray[np.bool_] | None
 ) -> Profiles:
-    """Replace the results with NaN at times that are too far from any measured current.
+    """Replace the results with NaN at the times `lost` (n,), too far from any measured current.
 
-    `lost` (n,) marks these times. Their status becomes "implausible-current" where `false` is true,
-    and "no-current" elsewhere.
+    Their status becomes "implausible-current" where `false` is true, and "no-current" elsewhere.
     """
     status = np.where(lost, STATUSES.index("no-current"), profiles.status)
     if false is not None:

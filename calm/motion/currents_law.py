@@ -11,12 +11,8 @@ from calm.physics.line import Floats
 
 @dataclass(frozen=True)
 class ReadCurrents:
-    """Currents at n times and k levels, as used to solve the line.
-
-    Attributes
-    ----------
-    level : (n, k) depths of the levels [m]
-    u, v : (n, k) eastward and northward components [m/s]
+    """East and north currents u, v (n, k) at levels of depth (n, k), as used to solve the line
+    [m/s, m].
     """
 
     level: Floats
@@ -33,8 +29,7 @@ class Linear:
     logs : (n, g) logarithms of the factors on the currents, which are the state
     depth : (n, p) depths at the state [m]
     slope : (n, p, g) derivatives of the depths with respect to the state
-    common : (n, p, f) derivatives of the depths with respect to the logarithms of the common
-        factors
+    common : (n, p, f) derivatives by the logarithms of the common factors
     """
 
     logs: Floats
@@ -43,9 +38,8 @@ class Linear:
     common: Floats
 
     def moved(self, logs: Floats, depth: Floats) -> Linear:
-        """Return the model at another state whose depths are known.
-
-        The slopes are updated by Broyden's method.
+        """Return the model at another state of known depths, with slopes updated by Broyden's
+        method.
         """
         step = logs - self.logs
         size = (step**2).sum(axis=1)[:, None]
@@ -61,8 +55,7 @@ class SpeedLaw:
 
     Attributes
     ----------
-    mean : (k,) mean of the logarithms of the speeds [m/s]
-    covariance : (k, k) covariance of these logarithms
+    mean, covariance : (k,) mean and (k, k) covariance of the logarithms of the speeds [m/s]
     kept : stored models of the line: first at the mean speeds, then at the times from which the
         distribution was learnt; their states are relative to `mean`
     """

@@ -37,14 +37,11 @@ LIKELY_ALONE = 1000.0
 
 They are higher because an error of the line may be the cause instead.
 """
-MOST = 8
-"""Maximum number of faults."""
-CLOCKS, FURTHEST = 0.01, 13.0
-"""Probability of a wrong clock, and the maximum lag searched [h]."""
+MOST = 8  # maximum number of faults
+CLOCKS, FURTHEST = 0.01, 13.0  # probability of a wrong clock, and the maximum lag searched [h]
 GAIN, GAINS, ALL_GAINS = 0.02, 0.01, 0.001
 """Prior deviation of a gain, and the probability of a wrong gain in one sensor and in all."""
-EXCHANGED = 0.01
-"""Probability that two labels are exchanged."""
+EXCHANGED = 0.01  # probability that two labels are exchanged
 LEAST = {
     "moved": 3.0, "clock": 0.08, "gain": 0.003, "offset": 2.5, "drift": 1.0, "slip": 1.5,
     "exchanged": 0.0, "currents": 0.1, "buoyancy": 0.06, "length": 0.004, "drag": 0.3,
@@ -55,12 +52,9 @@ LEAST = {
 Units: m for `moved`, `offset`, `drift` and `slip`; for `clock` hours, and also time steps of the
 record; 1 for `gain`; otherwise the logarithm of a factor.
 """
-RIVALS = 3
-"""Maximum number of rival explanations reported."""
-FINEST = 0.02
-"""Uncertainty added to the lag of a clock, as a share of the time step of the record."""
-FEWEST = 20
-"""Least number of times for a diagnosis."""
+RIVALS = 3  # maximum number of rival explanations reported
+FINEST = 0.02  # uncertainty added to the lag of a clock, as a share of the time step of the record
+FEWEST = 20  # least number of times for a diagnosis
 
 
 @dataclass(frozen=True)
@@ -86,11 +80,7 @@ Weighed = list[tuple[Suspect, float]]
 
 
 def diagnosed(task: Task) -> tuple[Fault, ...]:
-    """Return the likely faults of the sensors, the currents and the line, most likely first.
-
-    If the task already holds diagnosed faults, they are returned unchanged. A record with too few
-    times gives no faults.
-    """
+    """Return the likely faults of sensors, currents and line, or those that the task holds."""
     if task.faults is not None:
         return task.faults
     law, causes = law_near(task)
@@ -100,10 +90,9 @@ def diagnosed(task: Task) -> tuple[Fault, ...]:
 
 
 def law_near(task: Task) -> tuple[LinearLaw | None, list[Suspect]]:
-    """Return the linear model of the readings, and possible faults of the line and its currents.
+    """Return the linear model of the readings, and possible faults of line and currents.
 
-    The model is linearised at the solution of the task. The model is None if no time has
-    measurements. The list of faults is empty if the currents were inferred.
+    There is no model without measurements, and there are no such faults of inferred currents.
     """
     times = chosen_times(task.measured, task.smoother is None)
     if not len(times):
@@ -161,9 +150,8 @@ class Diagnosis:
     def _at(self, late: float) -> Floats:
         """Return (n, s) depths read by the sensors `late` hours after each time [m].
 
-        Between the times of the record, the interpolation takes the slope and a quarter of the
-        curvature. It neither amplifies nor smooths noise; either would by itself favour a clock
-        error.
+        Interpolation takes the slope and a quarter of the curvature. It neither amplifies nor
+        smooths noise; either would by itself favour a clock error.
         """
         whole = round(late / self.step) if self.step > 0.0 else 0
         part = late / self.step - whole if self.step > 0.0 else 0.0
@@ -239,11 +227,7 @@ class Diagnosis:
     def fitted(self, taken: list[Suspect], last: Suspect | None, alike: float) -> _Found:
         """Fit the sizes of the faults `taken` and `last`; compute the likelihood of the pressures.
 
-        Parameters
-        ----------
-        taken : faults that are already accepted
-        last : additional fault; None for none
-        alike : number of successive times that share an error
+        Errors are shared by `alike` successive times.
         """
         whole = taken if last is None else [*taken, last]
         free = [one for one in whole if one.wide]
@@ -361,12 +345,7 @@ class Diagnosis:
         return float(((ROBUST + count) * np.log1p(misfit / ROBUST)).sum())
 
     def _late(self, taken: list[Suspect], left: Floats, mine: NDArray[np.bool_]) -> Suspect:
-        """Find the most likely clock error shared by the sensors in the mask `mine`.
-
-        Parameters
-        ----------
-        left : (n, s) residuals [m] without any clock error
-        """
+        """Find the most likely clock error shared by the sensors in the mask `mine`."""
         reach, step = int(FURTHEST / self.step) if self.step > 0.0 else 0, self.step
 
         def miss(late: float) -> float:

@@ -1,7 +1,4 @@
-"""Estimate of unmeasured currents from pressures, independently at each time.
-
-The line is linearised about a state of the currents.
-"""
+"""Estimate of unmeasured currents from pressures, independently at each time."""
 
 from __future__ import annotations
 
@@ -27,8 +24,7 @@ class Posterior:
     sea : (n,) height of the sea surface above its mean [m]
     depth, variance : (n, p) depths of the points [m] and their variances [m²]
     evidence : (n,) log probability density of the measured depths
-    innovation : (n, s) measured minus predicted depths [m]
-    expected : (n, s, s) covariance of the innovation
+    innovation, expected : (n, s) measured minus predicted depths [m], and covariance (n, s, s)
     """
 
     logs: Floats
@@ -47,15 +43,10 @@ def posterior(
     common: Common,
     still: Floats,
 ) -> Posterior:
-    """Return the posterior of the currents and of all depths in the linear model.
+    """Return the posterior of currents and depths, linearised at a state of the currents.
 
-    Parameters
-    ----------
-    one : measurements at n times
-    at : depths linearised about a state of the currents
-    spread : (g, g) prior covariance of the logarithms of the factors on the currents
-    common : common unknowns
-    still : (p,) depths in still water [m]
+    The factors on the currents have the prior covariance `spread` (g, g) of their logarithms;
+    `still` are the depths (p,) in still water [m].
     """
     n, p, g = at.slope.shape
     s, f = len(one.point), at.common.shape[2]

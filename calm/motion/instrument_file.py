@@ -65,12 +65,11 @@ class Instruments:
     Attributes
     ----------
     path : path of the file
-    clock : name of the time variable
-    dimension : name of the time dimension
+    clock, dimension : names of the time variable and of the time dimension
     along : name of the dimension of the instruments; None for a single instrument
     time : (n,) times
     who : identities of the instruments
-    point : index of the point of the line for each instrument; None for an unmatched instrument
+    point : point of the line for each instrument; None for an unmatched instrument
     """
 
     path: Path
@@ -88,22 +87,9 @@ class Instruments:
 
 
 def read_instruments(given: Path, line: LinePlaces) -> tuple[list[Instruments], list[str]]:
-    """Read the instruments of a file or folder and match them to points of the line.
+    """Read the instruments of a file or folder, and match them to points of the line.
 
     Also return notes on the matches.
-
-    Parameters
-    ----------
-    given : the file, or a folder of .nc files
-    line : points of the line
-
-    Raises
-    ------
-    InputError
-        A file is not NetCDF, has groups or no times, or does not identify its instruments.
-    UsageError
-        A file already has a variable or a dimension with the name of an added variable, or no
-        instrument matches a part of the line.
     """
     seabed = float(line.still[-1])
     found = [_read(path, seabed) for _, path in files_given([str(given)])]
@@ -183,22 +169,9 @@ def write_depths(
 ) -> list[str]:
     """Write a copy of an instrument file with depths, standard deviations and flags added.
 
-    Parameters
-    ----------
-    instruments : file to copy, and its instruments
-    result : dataset of `calm motion`
-    gap : longest gap over which depths are interpolated
-    output : path of the copy
-    inputs : names and hashes of the source files of the depths
-
-    Returns
-    -------
-    Names of the instruments that get no depths because they match no point of the line.
-
-    Raises
-    ------
-    OSError
-        The disk has no space for the copy.
+    Depths come from a dataset of `calm motion`, and are interpolated over gaps of at most `gap`;
+    the names and hashes of their source files, `inputs`, are added to the history. Return the names
+    of the instruments that get no depths because they match no point of the line.
     """
     import xarray as xr
 
@@ -258,17 +231,10 @@ def write_depths(
 def at_own_times(
     result: Dataset, point: int, time: NDArray[np.datetime64], gap: np.timedelta64
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int8]]:
-    """Interpolate depth, standard deviation and flag of a point to the times of an instrument.
+    """Interpolate depth, standard deviation and flag of a point to the times (n,) of an instrument.
 
     The flag is "measured" if the pressure of the instrument itself was used, "interpolated" for
-    other estimated depths, and "missing" if there is no depth.
-
-    Parameters
-    ----------
-    result : dataset of `calm motion`
-    point : index of the point, as defined in `calm.motion.line_response.Forward`
-    time : (n,) times of the instrument
-    gap : longest gap over which depths are interpolated
+    other estimated depths, and "missing" if there is no depth, as in gaps longer than `gap`.
     """
     known = result["time"].values
     depth, spread = (interpolated(known, one, time, gap) for one in depths_at(result, point))
@@ -385,9 +351,9 @@ def _describe(
 ) -> None:
     """Add global attributes on depths and mooring, and a line in the history.
 
-    Attributes of the original file are kept, except for the range of depths. Attributes that begin
-    with the same word, such as `creator_name` and `creator_email`, are treated as a group: if the
-    original has one of them, none of the group is added.
+    Attributes of the original file are kept, except for the range of depths. If the original has
+    one of several attributes that begin with the same word, such as `creator_name`, none of these
+    is added.
     """
     name, _, mark = instruments.names
     mooring = _mooring(result)
@@ -412,10 +378,7 @@ def _describe(
 
 
 def _place(copy: Dataset, result: Dataset) -> list[float]:
-    """Return latitude and longitude [degrees] from the file, or else from the mooring.
-
-    The result is empty if they are unknown.
-    """
+    """Return latitude and longitude [degrees] from the file or the mooring; empty if unknown."""
     found = []
     for axis in ("latitude", "longitude"):
         own = [one for one in copy.variables.values() if one.attrs.get("standard_name") == axis]

@@ -3,11 +3,10 @@
 The unknowns at each time are the current at several depths (knots), the relative error in the
 knockdown of each stretch of the line, and the tide. The unknowns of the whole record are factors on
 the drag, the datum, and the offset of each sensor; steps in the datum and the offsets are rare. All
-priors are normal, and states either decay with time or persist. Errors of meters and sensors follow
-Student's t distribution, represented by weights of the readings. The meter error for each quality
-flag and the error of the line are estimated by expectation and maximisation (Dempster, Laird and
-Rubin 1977). Gauss-Newton steps over the whole record use depths and derivatives from solutions of
-the line.
+priors are normal. Errors of meters and sensors follow Student's t distribution, represented by
+weights of the readings. The meter error for each quality flag and the error of the line are
+estimated by expectation and maximisation (Dempster, Laird and Rubin 1977). Gauss-Newton steps over
+the whole record use depths and derivatives from solutions of the line.
 """
 
 from __future__ import annotations
@@ -36,10 +35,8 @@ which the factors are updated.
 """
 FACTOR_STEP = 0.05
 """Step of the logarithm of a factor for its slopes, and change above which slopes are renewed."""
-STALE = 0.03
-"""Change in a current above which its slopes are renewed [m/s]."""
-LONGEST = 0.5
-"""Maximum change in a current in one step [m/s]."""
+STALE = 0.03  # change in a current above which its slopes are renewed [m/s]
+LONGEST = 0.5  # maximum change in a current in one step [m/s]
 
 MOST_LEVELS, KNOTS, APART = 8, 12, 2.0
 """Number of levels up to which each is a knot, number of knots for more levels, and the distance
@@ -63,12 +60,9 @@ FLAG_RANGE, FEWEST = (0.6, 15.0), 20
 The lower limit is above zero because the current at even a perfect meter differs from the current
 on the line around it.
 """
-STUDENT = 4.0
-"""Degrees of freedom of Student's t distribution of the readings."""
-ALIKE_HOURS = 1.0
-"""Time over which the error of a meter persists [h]."""
-LEAST_SPREAD = 0.02
-"""Least deviation of a current about its mean [m/s]."""
+STUDENT = 4.0  # degrees of freedom of Student's t distribution of the readings
+ALIKE_HOURS = 1.0  # time over which the error of a meter persists [h]
+LEAST_SPREAD = 0.02  # least deviation of a current about its mean [m/s]
 CURRENT_HOURS, CURRENT_REACH = 16.0, 600.0
 """Initial correlation time [h] and correlation depth [m] of the current."""
 HOURS = (4.0, 16.0)
@@ -78,8 +72,7 @@ WIDER = 2.0
 
 With the unchanged prior, smoothing would damp the strongest currents, and so raise the drag.
 """
-METERS_ALIKE = 0.02
-"""Error common to all meters of a record, as a share of the speed."""
+METERS_ALIKE = 0.02  # error common to all meters of a record, as a share of the speed
 
 STRETCHES, SPAN, LOCAL = 10, 0.25, 0.3
 """Number of stretches with separate errors in knockdown, their correlation length as a share of the
@@ -103,14 +96,10 @@ TAILS = {"datum": 1.0 / 2.0, "place": 1.0 / 5.0}
 
 A place of 2 cm begins at a variance of 1 m², and shrinks unless it exceeds four deviations.
 """
-ZEROS = 2.0
-"""Variance of Student's law with four degrees of freedom over that of a normal law."""
-SETTLED = 6
-"""Number of steps before the line error is estimated, as it would absorb sensor steps."""
-LONGER = 30.0
-"""Maximum factor by which a step of the line error is lengthened."""
-FURTHEST = 0.7
-"""Maximum logarithm of a factor."""
+ZEROS = 2.0  # variance of Student's law with four degrees of freedom over that of a normal law
+SETTLED = 6  # number of steps before the line error is estimated, as it would absorb sensor steps
+LONGER = 30.0  # maximum factor by which a step of the line error is lengthened
+FURTHEST = 0.7  # maximum logarithm of a factor
 
 
 @dataclass(frozen=True)
@@ -131,12 +120,7 @@ class Knots:
     seabed: float
 
     def at(self, levels: Floats) -> Floats:
-        """Return depths (n, K) of the knots, which move with the levels [m].
-
-        Parameters
-        ----------
-        levels : (n, k) depths of the levels [m]
-        """
+        """Return depths (n, K) of the knots, which move with the levels (n, k) [m]."""
         level, knot = self.measured
         place = np.append(self.depth[knot], self.seabed)
         off = np.pad(levels[:, level] - self.depth[knot], ((0, 0), (0, 1)))
@@ -152,13 +136,9 @@ class Knots:
 def knots_of(place: Floats, top: float, seabed: float) -> Knots:
     """Choose the knots for levels of measured current.
 
-    If there are few levels, each level is a knot. A knot may be added above the top of the line,
-    and another below the lowest level.
-
-    Parameters
-    ----------
-    place : (k,) depths of the levels in still water, in any order [m]
-    top, seabed : depths of the top of the line and of the seabed [m]
+    If there are few levels, each is a knot. A knot may be added above the top of the line, and
+    another below the lowest level. The levels have the depths `place` (k,) in still water, in any
+    order [m].
     """
     order = np.argsort(place, kind="stable")
     chosen: list[int] = []
@@ -178,16 +158,8 @@ def knots_of(place: Floats, top: float, seabed: float) -> Knots:
 
 @dataclass(frozen=True)
 class Columns:
-    """Slices of the state vector, by kind of unknown.
-
-    Attributes
-    ----------
-    current : currents at the knots
-    share : relative errors of the stretches of the line
-    tide : height of the tide
-    factor : logarithms of the factors
-    datum : correction common to all depths
-    zero, place : errors in the zeros of the sensors, and in their positions on the line
+    """Slices of the state vector: currents at the knots, relative errors of the stretches of the
+    line, tide, logarithms of the factors, datum, and zeros and places of the sensors on the line.
     """
 
     current: slice
@@ -234,10 +206,7 @@ class ErrorScales:
 
 
 class CurrentSmoother:
-    """Joint estimate of the currents, line errors, sensor errors and tide over a whole record.
-
-    The record has measured currents.
-    """
+    """Joint estimate of currents, line errors, sensor errors and tide over a whole record."""
 
     def __init__(
         self, mooring: Design, measured: MooringMeasurements, names: Sequence[str]
@@ -314,24 +283,16 @@ class CurrentSmoother:
         return whole[:, :count], whole[:, count:]
 
     def depths(self, state: Floats, factor: Floats, times: NDArray[np.int64] | slice) -> Floats:
-        """Return (n, p) depths of the points [m].
+        """Return (n, p) depths of the points [m] in currents (n, 2 K) at the knots, less the mean.
 
-        Parameters
-        ----------
-        state : (n, 2 K) currents at the knots minus their mean [m/s]
-        factor : (f,) logarithms of the factors
-        times : indices of the times to which the rows of `state` belong
+        The factors have the logarithms (f,); the currents are those of the times with these
+        indices.
         """
         forward = self.forward(factor)
         return forward.depths(self.knot_depth[times], *self.currents(state))
 
     def forward(self, factor: Floats) -> Forward:
-        """Return the mooring with given factors, from a small cache if possible.
-
-        Parameters
-        ----------
-        factor : (f,) logarithms of the factors
-        """
+        """Return the mooring with factors of given logarithms (f,), from a small cache."""
         key = tuple(factor.tolist())
         if key not in self._forwards:
             factors = dict(zip(self.names, np.exp(factor).tolist(), strict=True))
@@ -341,9 +302,8 @@ class CurrentSmoother:
         return self._forwards[key]
 
     def linear(self) -> Floats:
-        """Return (n, p) depths of the points at the current state [m].
-
-        The slopes are recomputed at times where the state has changed.
+        """Return (n, p) depths of the points [m]; recompute slopes at times where the state has
+        changed.
         """
         now, factor = self.state[:, self.columns.current], self.factor
         far = np.abs(now - self._slopes_at).max(axis=1) > STALE
@@ -375,8 +335,7 @@ class CurrentSmoother:
     def _stretches(self) -> tuple[Floats, NDArray[np.int64], Floats]:
         """Limits of the stretches, stretch of each point, and correlation between the stretches.
 
-        The limits are depths in still water [m], from the seabed up. The correlation applies to the
-        relative errors in knockdown.
+        The limits are depths in still water [m], from the seabed up.
         """
         edges = np.linspace(self.still.max(), self.still.min(), STRETCHES + 1)
         own = np.clip(np.searchsorted(-edges, -self.still, "right") - 1, 0, STRETCHES - 1)
@@ -385,13 +344,8 @@ class CurrentSmoother:
         return edges, own, np.exp(-np.abs(middle[:, None] - middle) / span)
 
     def by_line(self, there: Floats) -> Floats:
-        """Return derivatives of the depths with respect to the relative errors of the stretches.
-
-        The result has shape (n, p, z), for z stretches of the line.
-
-        Parameters
-        ----------
-        there : (n, p) depths of the points [m]
+        """Return derivatives (n, p, z) of the depths (n, p) [m] by the relative errors of z
+        stretches.
         """
         edges, own, _ = self._stretches
         order = np.argsort(self.still, kind="stable")
@@ -413,9 +367,8 @@ class CurrentSmoother:
     # --- the law
 
     def meter_law(self) -> StateSpace:
-        """Return a state-space model of the currents at the knots.
-
-        The readings of this model are those of the current meters, without the pressures.
+        """Return a state-space model of the currents at the knots, with the readings of the meters
+        alone.
         """
         one, both = self.measured, np.eye(2)
         apart = np.abs(self.knots.depth[:, None] - self.knots.depth)
@@ -431,13 +384,9 @@ class CurrentSmoother:
         return StateSpace(fade, steady, np.zeros_like(fade), steady, seen, flow, noise)
 
     def law(self, there: Floats) -> tuple[StateSpace, Floats]:
-        """Return the state-space model about the current state, and the slopes of the depths.
+        """Return the state-space model about the current state, and slopes (n, p, q) of the depths.
 
-        The slopes (n, p, q) are derivatives with respect to the unknowns.
-
-        Parameters
-        ----------
-        there : (n, p) depths of the points at the current state [m]
+        The points have the depths (n, p) at the current state [m].
         """
         one, at, own = self.measured, self.columns, self.meter_law()
         n, flows = own.fade.shape
@@ -501,11 +450,9 @@ class CurrentSmoother:
     def solve(self, slips: Sequence[tuple[int, int, float]] = ()) -> None:
         """Iterate until the depths converge.
 
-        Parameters
-        ----------
-        slips : steps in sensor readings with which to begin, each as index of the sensor, index of
-            the time, and size [m]; without them, the iterations for two or three sensors may
-            attribute the step of one sensor to an offset of another sensor
+        `slips` are steps in sensor readings with which to begin: indices of sensor and time, and
+        size [m]. Without them, the iterations for two or three sensors may attribute the step of
+        one sensor to an offset of another.
         """
         self.stepped = self.usual.copy()
         for sensor, time, size in slips:
@@ -539,9 +486,9 @@ class CurrentSmoother:
     def _place(self) -> None:
         """Update the factors by a Gauss-Newton step, with currents estimated from the meters alone.
 
-        Currents that also fit the pressures would become too small, and the drag too large. The
-        weight of successive times with a common error is reduced, and steps of the datum and the
-        offsets are subtracted first.
+        Currents that also fit the pressures would become too small, and the drag too large.
+        Successive times with a common error count less, and steps of datum and offsets are
+        subtracted first.
         """
         times = chosen_times(self.measured)
         if not self.names or not len(times):
@@ -568,8 +515,8 @@ class CurrentSmoother:
     def _grown(self, step: float) -> float:
         """Return the relative error of the line after a step of its logarithm.
 
-        Steps of expectation and maximisation are short if the pressures constrain the error poorly.
-        They are lengthened as long as they have the same sign.
+        Steps of expectation and maximisation are short if the pressures constrain the error poorly;
+        they are lengthened as long as they have the same sign.
         """
         same = step * self._last > 0.0
         self._longer = min(1.5 * self._longer, LONGER) if same else max(self._longer / 3.0, 1.0)
@@ -735,9 +682,8 @@ class CurrentSmoother:
     def doubt(self) -> Floats:
         """Probability (n, k) that the meter reading at a level is unrelated to the current there.
 
-        The probability follows from the prior odds and the ratio of two normal densities of the
-        reading. One density has the variance of the meter error; the other also includes the
-        variability of the current.
+        It follows from the prior odds and two normal densities of the reading: one has the variance
+        of the meter error, the other also includes the variability of the current.
         """
         one, noise = self.measured, self.meter_noise
         spread = np.square(self.knots.level @ self.spread)
@@ -752,9 +698,8 @@ class CurrentSmoother:
     def by_meters(self, times: NDArray[np.int64]) -> tuple[LinearLaw, ReadCurrents, Linear]:
         """Return a linear model of the pressures at several times, with currents from meters alone.
 
-        The model is linearised about the smoothed currents of the meters. Also return these
-        currents at the knots, and the line in these currents with its slopes with respect to the
-        logarithm of a factor on all speeds.
+        Also return these currents at the knots, and the line in these currents with its slopes by
+        the logarithm of a factor on all speeds.
         """
         one, at, factor, law = self.measured, self.columns, self.factor, self.meter_law()
         wide = WIDER**2 * law.steady

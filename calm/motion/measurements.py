@@ -23,13 +23,11 @@ from calm.records.instrument_series import InstrumentSeries, split_label
 from calm.records.record import RULES
 from calm.records.velocity import MISSING
 
-MOST_TIMES = 500
-"""Maximum number of times for the common unknowns, spread evenly over the record."""
+MOST_TIMES = 500  # maximum number of times for the common unknowns, spread evenly over the record
 
 Times = NDArray[np.datetime64]
 
-FREE = -1
-"""Index for a level without a point or a sensor."""
+FREE = -1  # index for a level without a point or a sensor
 
 
 @dataclass(frozen=True)
@@ -40,19 +38,15 @@ class MooringMeasurements:
     ----------
     time : (n,) increasing times, to the nanosecond
     label : (s,) labels of the sensors
-    point : (s,) index of the point of each sensor, as defined in
-        `calm.motion.line_response.Forward`
-    depth : (n, s) depths of the sensors from their pressures [m]; NaN if missing or rejected by a
-        flag
+    point : (s,) points of the sensors, as defined in `calm.motion.line_response.Forward`
+    depth : (n, s) depths of the sensors from their pressures [m]; NaN if missing or rejected
     level_depth : (n, k) depths of the levels [m]; NaN for levels on the line
-    level_point : (k,) index of the point of each level on the line; `FREE` for fixed levels
+    level_point : (k,) points of the levels on the line; `FREE` for fixed levels
     u, v : (n, k) eastward and northward current [m/s]; NaN if missing
     flag : (n, k) quality flags of the current; 0 if the file has no flags
     tide : (n,) height of the sea surface above mean sea level [m]; None if unknown
-    false : (n,) whether an impossible current was removed at this time; None if no current was
-        removed
-    sunk : (n,) increase in depth of the whole mooring since the start [m]; None if the mooring
-        never moved
+    false : (n,) whether an impossible current was removed; None if none was removed
+    sunk : (n,) increase in depth of the whole mooring since the start [m]; None if it never moved
     """
 
     time: NDArray[np.datetime64]
@@ -98,9 +92,8 @@ class MooringMeasurements:
 
 
 def chosen_times(measured: MooringMeasurements, alone: bool = False) -> Integers:
-    """Choose up to `MOST_TIMES` times with a current and a pressure, evenly spread over the record.
-
-    If `alone` is true, times with a pressure but no current are also eligible.
+    """Choose up to `MOST_TIMES` times with a pressure and, unless `alone`, a current, evenly
+    spread.
     """
     currents = (np.isfinite(measured.u) & np.isfinite(measured.v)) | alone
     used = np.flatnonzero(np.isfinite(measured.depth).any(axis=1) & currents.any(axis=1))
@@ -121,12 +114,8 @@ def level_names(measured: MooringMeasurements, labels: Sequence[str]) -> tuple[s
 
 
 def nearest(time: Times, wanted: Times) -> Integers:
-    """Return the index (n,) of the time nearest to each wanted time; in a tie, the earlier time.
-
-    Parameters
-    ----------
-    time : (m,) increasing times
-    wanted : (n,) wanted times
+    """Return the index (n,) of the increasing times nearest to each wanted time; in a tie, the
+    earlier.
     """
     after = np.clip(np.searchsorted(time, wanted), 0, len(time) - 1)
     before = np.maximum(after - 1, 0)
@@ -139,10 +128,9 @@ def common_times(
 ) -> Times:
     """Choose the common times of all measurements.
 
-    The times of the first current record, or of the first sensor if there is none, are chosen
-    first. The times of the other currents, and then of the sensors, are added if they are more than
-    half the median time step away from all times chosen before. Of several added readings within a
-    quarter of the step (a burst), only the first is used.
+    The times of the first current record, or of the first sensor if there is none, are extended by
+    those of the others that are more than half the median time step away. Of several added readings
+    within a quarter of the step (a burst), only the first is used.
     """
     everything: list[CurrentMeasurements | InstrumentSeries] = [*currents, *sensors]
     times = everything[0].time
@@ -163,14 +151,9 @@ def _sparse(times: Times, step: np.timedelta64) -> Times:
 
 
 def interpolated(time: Times, value: Floats, wanted: Times, gap: np.timedelta64) -> Floats:
-    """Interpolate values linearly to other times (n,); the result is NaN in gaps longer than `gap`.
+    """Interpolate (m,) values linearly to other times (n,).
 
-    Parameters
-    ----------
-    time : (m,) increasing times
-    value : (m,) values at these times; NaN if unknown
-    wanted : (n,) other times
-    gap : longest time between two known values over which to interpolate
+    The result is NaN if the known values on either side are further apart than `gap`.
     """
     known = np.isfinite(value)
     if not known.any():
@@ -206,12 +189,8 @@ def without_spikes(
     """Remove readings far from the readings before and after, if other sensors show no change.
 
     The deviation of a reading from the straight line between the two adjacent readings is compared
-    with the usual deviation and with a quarter of the difference between the adjacent readings.
-    Also return notes on the removal.
-
-    Parameters
-    ----------
-    hidden : labels of sensors that are neither tested nor used to test others
+    with the usual deviation and with a quarter of the difference between the adjacent readings. The
+    sensors `hidden` are neither tested nor used to test others. Also return notes on the removal.
     """
     hours = (measured.time - measured.time[:1]) / np.timedelta64(1, "h")
     step = float(np.median(np.diff(hours))) if len(hours) > 1 else 0.0
@@ -240,10 +219,9 @@ def without_spikes(
 def exclude_readings(
     measured: MooringMeasurements, wrong: NDArray[np.bool_]
 ) -> tuple[MooringMeasurements, list[tuple[str, int, float, str]]]:
-    """Remove the readings that `wrong` (t, s) marks.
+    """Remove the readings that `wrong` (n, s) marks.
 
-    Also return, for each sensor with removed readings: its label, the number of these readings, and
-    the depth [m] and time of the first.
+    Also return the label, number of readings, and first depth [m] and time of each such sensor.
     """
     excluded = [
         (
@@ -269,19 +247,9 @@ def joined(
 ) -> MooringMeasurements:
     """Combine all measurements on common times, with levels and sensors from the top down.
 
-    Parameters
-    ----------
-    points : index of the point of each sensor
-    labels : labels of all points
-    still : (p,) depths of all points in still water [m]
-    gap : longest gap over which values are interpolated
-    sea_level : times, and heights of the sea surface above an arbitrary datum [m]
-
-    Raises
-    ------
-    UsageError
-        A current has a label that no part of the line has, the sea level covers none of the times,
-        or no time has both a current and a pressure.
+    Each sensor has one of `points`, whose labels and depths in still water [m] are `labels` and
+    `still`. Values are interpolated over gaps of at most `gap`. The heights [m] of `sea_level` may
+    have any datum.
     """
     time = common_times(currents, sensors)
     order = np.argsort([still[point] for point in points], kind="stable")
@@ -350,7 +318,7 @@ def _nearest(one: CurrentMeasurements, k: int, time: Times) -> NDArray[np.int8]:
 
 @dataclass(frozen=True)
 class CurrentMeasurements:
-    """Currents of one file.
+    """Currents of one file, at n times and k levels.
 
     Attributes
     ----------
@@ -359,10 +327,8 @@ class CurrentMeasurements:
     label : (k,) label of the part of the line at each level; empty for levels at fixed depths
     u, v : (n, k) eastward and northward current [m/s]
     flag : (n, k) quality flags; 0 if the file has no flags
-    source : name of the file
-    notes : remarks on the file
-    false : (n,) whether an impossible current was removed at this time; None if no current was
-        removed
+    source, notes : name of the file, and remarks on the file
+    false : (n,) whether an impossible current was removed; None if none was removed
     """
 
     time: NDArray[np.datetime64]
@@ -387,20 +353,9 @@ def read_currents(
     """Read the currents of several files.
 
     Each file is given by its path. A file with a single level may be given as ``LABEL=PATH``.
-
-    Parameters
-    ----------
-    seabed : depth of the water [m]
-    place : latitude and longitude of the mooring [degrees], if known
-    declination : magnetic declination, positive to the east [degrees]
-    maximum_speed : speed above which a current is removed and noted [m/s]
-
-    Raises
-    ------
-    InputError
-        A file is unreadable.
-    UsageError
-        A label is given for a file of several levels.
+    Speeds above `maximum_speed` [m/s] are removed and noted. `seabed` is the depth of the water
+    [m], `place` the latitude and longitude of the mooring, and `declination` the magnetic
+    declination, positive to the east [degrees].
     """
     found, terms = [], Terms(seabed, place, declination, on_the_line=True)
     for text in given:

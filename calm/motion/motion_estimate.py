@@ -46,21 +46,16 @@ if TYPE_CHECKING:
 _MATCHES = ("label", "height", "depth")
 CORRECTABLE = ("clock", "gain", "offset", "drift", "air")
 """Correctable errors of a sensor: faults of `calm.motion.remarks.Fault`, and air pressure."""
-GAP = np.timedelta64(2, "h")
-"""Default limit on the gap over which values are interpolated."""
+GAP = np.timedelta64(2, "h")  # default limit on the gap over which values are interpolated
 
 
-RARE = 0.1
-"""A note is added if the share of times with two sensors is below this value."""
+RARE = 0.1  # a note is added if the share of times with two sensors is below this value
 
 
 def shared_times(measured: MooringMeasurements, currents: bool) -> list[str]:
     """Return a note if few times have pressures from two or more sensors.
 
-    Raises
-    ------
-    UsageError
-        No time has pressures from two sensors, and no current was measured.
+    If there is no such time and no current was measured, a UsageError is raised.
     """
     if len(measured.label) < 2:
         return []
@@ -85,14 +80,8 @@ def shared_times(measured: MooringMeasurements, currents: bool) -> list[str]:
 def fitted(requested: Sequence[str] = (), currents: bool = True) -> tuple[str, ...]:
     """Return the names of the factors to estimate: the defaults and the requested factors.
 
-    With measured currents, the defaults are the two drag factors. Without measured currents, a
-    factor on all drag cannot be distinguished from a factor on the currents; the defaults are then
-    the drag of rigid pieces and the length.
-
-    Raises
-    ------
-    UsageError
-        A requested factor cannot be estimated.
+    Without measured currents, a factor on all drag cannot be distinguished from a factor on the
+    currents; the defaults are then the drag of rigid pieces and the length.
     """
     for name in requested:
         if name not in FACTORS:
@@ -105,35 +94,16 @@ def fitted(requested: Sequence[str] = (), currents: bool = True) -> tuple[str, .
 class RecoveredMooring:
     """A recovered mooring with its records.
 
-    Creating the object reads and corrects the measurements. `estimate` then estimates the motion,
-    and `study` compares the result with the measurements.
+    Creating the object reads the records and corrects known errors. `estimate` then estimates the
+    motion, and `study` compares the result with the measurements. The first attributes are the
+    parameters of `estimate_motion`, with all files as paths or ``LABEL=PATH``.
 
     Attributes
     ----------
-    mooring : mooring with a position
-    pressures, currents : files, as paths or ``LABEL=PATH``
-    match : how sensors are matched to the line: by `label`, or by nominal `height` or `depth`
-    fit : factors to estimate in addition to the drag
-    hold_out : labels of sensors that are withheld to test the result
-    cross_validate : whether to withhold each sensor in turn
-    correct : kinds of fault to correct, from `CORRECTABLE`; a fault is corrected only if no other
-        fault is as likely
-    sea_level : path of the sea-surface heights
-    flags : accepted quality flags of the pressures, separated by commas
-    gap : longest gap over which values are interpolated
-    declination : angle added to the directions of the currents [degrees]
-    without : labels of sensors to ignore
-    moved : step common to the depths of all sensors; None if there is none, or if currents were
-        measured
+    moved : step common to the depths of all sensors, sought only if no currents were measured
     measured : the measurements
     notes : notes on the measurements, in sentences
     source : names and hashes of the source files
-
-    Raises
-    ------
-    InputError, UsageError
-        A file cannot be read, the mooring has no position, no sensor is left, or an option is
-        invalid.
     """
 
     mooring: Design
@@ -253,13 +223,7 @@ class RecoveredMooring:
             self.source["corrected"] = "corrected for: " + "; ".join(off)
 
     def _without(self, points: dict[int, int], labels: Sequence[str]) -> dict[int, int]:
-        """Return the points of the sensors that are not ignored.
-
-        Raises
-        ------
-        UsageError
-            A label of `without` or `hold_out` belongs to no sensor.
-        """
+        """Return the points of the sensors that are not ignored."""
         known = [labels[at] for at in points.values()]
         for option, given in (("--without", self.without), ("--hold-out", self.hidden)):
             for label in given:
@@ -281,13 +245,7 @@ class RecoveredMooring:
     ) -> dict[str, int]:
         """Estimate the common unknowns, correct the requested faults, and write the result.
 
-        Parameters
-        ----------
-        output, workers, progress, tell : as in `calm.batch.run.run_batch`
-
-        Returns
-        -------
-        The same value as `calm.batch.run.run_batch`.
+        Parameters and result are those of `calm.batch.run.run_batch`.
         """
         task = self._prepared(tell)
         if self.correct:
@@ -326,14 +284,7 @@ class RecoveredMooring:
         tell: Callable[[str], None] = lambda _: None,
         workers: int | None = None,
     ) -> MotionEstimate:
-        """Compare a finished result with all measurements.
-
-        Parameters
-        ----------
-        result : result of `estimate`
-        tell : function that receives progress messages
-        workers : number of threads
-        """
+        """Compare a finished result of `estimate` with all measurements."""
         faults = (*self._faults, *self.moved, *diagnosed(self.task))
         study = replace(judged(self.task, self.measured, result, faults), notes=tuple(self.notes))
         if self.cross_validate:

@@ -15,17 +15,13 @@ from calm.physics.line import Floats, Integers
 Times = NDArray[np.datetime64]
 
 NO_TIME = np.datetime64("NaT", "ns")
-FALSE = 0.5
-"""Probability above which the current of a level is reported as false."""
+FALSE = 0.5  # probability above which the current of a level is reported as false
 ALL, LINE, CURRENTS = "all sensors", "the line", "all currents"
 OF_LINE = ("currents", "buoyancy", "length", "drag", "fouling")
 """Faults of the line and its currents, not of sensors. Their sizes are logarithms."""
-LIKELY = 20.0
-"""Odds above which a fault is reported."""
-FAR_OFFSET = 2.5
-"""Offset of all sensors above which it is reported, in prior standard deviations."""
-FAR_DATUM = 10.0
-"""Offset of all sensors that is always reported [m]."""
+LIKELY = 20.0  # odds above which a fault is reported
+FAR_OFFSET = 2.5  # offset of all sensors above which it is reported, in prior standard deviations
+FAR_DATUM = 10.0  # offset of all sensors that is always reported [m]
 FAR_LENGTH = 5.0
 """Error in length above which it is reported if currents were not measured, in prior deviations.
 
@@ -33,8 +29,7 @@ Inferred currents absorb much of an error in length.
 """
 FAR_FACTOR = 3.0
 """Distance of a drag factor from 1, in prior deviations, above which it absorbs another error."""
-WORST = 0.3
-"""Share of the knockdown above which the error of the line is reported."""
+WORST = 0.3  # share of the knockdown above which the error of the line is reported
 
 
 @dataclass(frozen=True)
@@ -45,16 +40,14 @@ class Fault:
     ----------
     label : label of the sensor; `ALL` for all sensors together
     kind : `moved`, `clock`, `gain`, `offset`, `drift`, `slip`, `exchanged`, or one of `OF_LINE`
-    value, low, high : size of the fault, and the limits of its 95 % interval. The size of a `clock`
-        fault is the lag [h]; of a `gain`, the gain; of an `offset` or `moved`, the excess depth
-        [m]; of a `drift`, the excess depth at the end of the drift [m]; of a `slip`, the distance
-        moved down the line [m]; of `exchanged`, 0; of a fault in `OF_LINE`, the factor on the value
-        in the file or on the reading of the meter
+    value, low, high : size of the fault, and its 95 % interval: the lag of a `clock` [h]; a `gain`;
+        the excess depth of an `offset` or `moved`, or at the end of a `drift` [m]; the distance
+        down the line of a `slip` [m]; for `OF_LINE`, the factor on the value in the file or on the
+        reading of the meter
     odds : odds in favour of this fault against all alternatives, including no fault
-    since : start of a slip or drift; NaT for other faults
-    until : end of a drift; NaT for other faults
-    other : label of the second of two sensors whose labels are exchanged; otherwise empty
-    rival : alternative explanations that are nearly as likely; empty if there are none
+    since, until : start of a step, slip or drift, and end of a drift; otherwise NaT
+    other : label of the second of two sensors whose labels are exchanged
+    rival : alternative explanations that are nearly as likely
     corrected : whether the fault has been corrected
     """
 
@@ -72,10 +65,7 @@ class Fault:
 
     @property
     def size(self) -> float:
-        """Deviation of `value` from the value that means no fault.
-
-        For a fault of the line, the logarithm of the factor `value` is returned.
-        """
+        """Deviation of `value` from no fault; for a fault of the line, the logarithm of `value`."""
         if self.kind in OF_LINE:
             return float(np.log(self.value))
         return self.value - (self.kind == "gain")
@@ -169,26 +159,13 @@ class Fault:
 
 
 def false_current_times(names: Sequence[str], time: Times, doubt: Floats) -> dict[str, Times]:
-    """Return, for each level by name, the times at which its current is probably false.
-
-    Parameters
-    ----------
-    names : (k,) names of the levels
-    time : (n,) times
-    doubt : (n, k) probability that the current at a level is false
-    """
+    """Return, for each of k levels by name, the times (n,) at which its doubt (n, k) is large."""
     hit = doubt > FALSE
     return {name: time[hit[:, k]] for k, name in enumerate(names) if hit[:, k].any()}
 
 
 def current_remarks(false: Mapping[str, Times], count: int) -> list[str]:
-    """Return a remark for each level with false currents.
-
-    Parameters
-    ----------
-    false : result of `false_current_times`
-    count : number of times in the record
-    """
+    """Return a remark for each level with false currents, in a record of `count` times."""
     return [
         f"current at {name}: its direction or speed is probably wrong at {len(when)} of {count} "
         f"times, first at {np.datetime_as_string(when[0], 'm')}"
@@ -205,8 +182,7 @@ def no_drag(name: str, value: float) -> bool:
 def alone_remarks(common: Common) -> list[str]:
     """Return a remark if the line is inconsistent with the pressures even in inferred currents.
 
-    The pressures do not reveal the cause, because suitable currents bring most lines into agreement
-    with the pressures.
+    The cause is unknown, because suitable currents bring most lines into agreement.
     """
     length = common.factors.get("length", 1.0)
     far = abs(float(np.log(length))) > FAR_LENGTH * common_unknowns.FACTORS["length"]
@@ -221,13 +197,7 @@ def alone_remarks(common: Common) -> list[str]:
 
 
 def datum_remarks(common: Common, seabed: float) -> list[str]:
-    """Return a remark if all sensors share a large offset.
-
-    Parameters
-    ----------
-    common : common unknowns
-    seabed : depth of the water [m]
-    """
+    """Return a remark if all sensors share a large offset, compared with the water depth [m]."""
     if abs(common.datum) <= min(FAR_OFFSET * common_unknowns.DATUM * seabed, FAR_DATUM):
         return []
     return [
@@ -236,10 +206,8 @@ def datum_remarks(common: Common, seabed: float) -> list[str]:
     ]
 
 
-CALM = 0.1
-"""Share of times that count as calm, with the smallest knockdown."""
-BAND = 1.96
-"""Half-width of the 95 % interval of a normal distribution, in standard deviations."""
+CALM = 0.1  # share of times that count as calm, with the smallest knockdown
+BAND = 1.96  # half-width of the 95 % interval of a normal distribution, in standard deviations
 
 
 @dataclass(frozen=True)
@@ -250,8 +218,7 @@ class Agreement:
     ----------
     count : number of times with both depths
     bias : mean of computed minus measured depth [m]
-    rms : root mean square of computed minus measured depth, after subtraction of its mean over the
-        calm times [m]
+    rms : root mean square of the `difference` [m]
     r : correlation of computed and measured depths
     slope : regression slope of computed on measured depths
     """
@@ -264,12 +231,8 @@ class Agreement:
 
 
 def calm_times(down: Floats, among: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return a mask of the 10 % of the times with the smallest knockdown, but of at least one time.
-
-    Parameters
-    ----------
-    down : (n,) knockdown [m]
-    among : (n,) mask of the times to choose from
+    """Return a mask of the 10 % of the times in `among` with the smallest knockdown (n,), at least
+    one.
     """
     known = among & np.isfinite(down)
     chosen = np.zeros_like(known)
@@ -284,15 +247,9 @@ def calm_times(down: Floats, among: NDArray[np.bool_]) -> NDArray[np.bool_]:
 def difference(
     computed: Floats, measured: Floats, calm: NDArray[np.bool_], among: NDArray[np.bool_]
 ) -> Floats:
-    """Return computed minus measured depths (n,), relative to their mean at calm times [m].
+    """Return computed minus measured depths (n,), relative to their mean at the calm times [m].
 
-    The result is NaN at times that are not compared.
-
-    Parameters
-    ----------
-    computed, measured : (n,) depths [m]
-    calm : (n,) mask of the times with the smallest knockdown
-    among : (n,) mask of the times to compare
+    The result is NaN at times that are not in the mask `among`.
     """
     off = np.where(among, computed - measured, np.nan)
     at_rest = off[calm & np.isfinite(off)]
@@ -309,14 +266,7 @@ def rms(off: Floats) -> float:
 def agreement(
     computed: Floats, measured: Floats, calm: NDArray[np.bool_], among: NDArray[np.bool_]
 ) -> Agreement:
-    """Compare computed and measured depths at selected times.
-
-    Parameters
-    ----------
-    computed, measured : (n,) depths [m]
-    calm : (n,) mask of the times with the smallest knockdown
-    among : (n,) mask of the times to compare
-    """
+    """Compare (n,) computed and measured depths [m] at the times in the mask `among`."""
     both = among & np.isfinite(computed) & np.isfinite(measured)
     count, nan = int(both.sum()), float("nan")
     if count < 2:
@@ -334,10 +284,7 @@ def agreement(
 
 
 def coverage(off: Floats, deviation: Floats) -> float:
-    """Return the share of the differences that are within their 95 % interval.
-
-    The result is NaN if there are no differences.
-    """
+    """Return the share of the differences within their 95 % interval; NaN if there are none."""
     known = np.isfinite(off) & np.isfinite(deviation)
     inside = np.abs(off[known]) <= BAND * deviation[known]
     return float(inside.mean()) if inside.size else float("nan")
@@ -346,15 +293,9 @@ def coverage(off: Floats, deviation: Floats) -> float:
 def linear(depth: Floats, point: Integers, still: Floats, wanted: int) -> Floats:
     """Interpolate depths (n,) of a point [m] linearly between the nearest sensors.
 
-    Beyond the outermost sensors, depths are extrapolated from the two nearest sensors. With a
-    single sensor, all points are displaced equally.
-
-    Parameters
-    ----------
-    depth : (n, s) depths of the sensors [m]; a NaN gives NaN at that time
-    point : (s,) indices of the points of the sensors
-    still : (p,) depths in still water [m]
-    wanted : index of the point
+    The sensors at the points (s,) have depths (n, s); `still` are the depths (p,) of all points in
+    still water [m]. Beyond the outermost sensors, depths are extrapolated; with a single sensor,
+    all points are displaced equally.
     """
     from scipy.interpolate import make_interp_spline
 
@@ -367,14 +308,10 @@ def linear(depth: Floats, point: Integers, still: Floats, wanted: int) -> Floats
 
 
 def pchip(depth: Floats, point: Integers, still: Floats, wanted: int) -> Floats:
-    """Interpolate depths (n,) of a point [m] from the knockdown of the sensors, by PCHIP.
+    """Interpolate depths (n,) of a point [m] from the knockdown of the sensors, as in `linear`.
 
-    The method is that of Fritsch and Carlson (1980). The knockdown is interpolated over the height
-    in still water above the lowest point of the line, where the knockdown is 0.
-
-    Parameters
-    ----------
-    depth, point, still, wanted : as in `linear`
+    The method is PCHIP (Fritsch and Carlson 1980) over the height in still water above the lowest
+    point of the line, where the knockdown is 0.
     """
     from scipy.interpolate import PchipInterpolator
 

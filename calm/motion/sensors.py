@@ -42,20 +42,8 @@ def read_sensors(
     """Read the depths measured by the sensors of several files [m].
 
     Each file is given by its path. A file with a single sensor may be given as ``LABEL=PATH``.
-    Pressures are converted to depths by TEOS-10.
-
-    Parameters
-    ----------
-    flags : accepted quality flags, for files with flags
-    latitude : latitude of the mooring [degrees]
-    seabed : depth of the water [m], to convert nominal heights above the seabed
-
-    Raises
-    ------
-    InputError
-        A file cannot be read, or has no pressures with a unit.
-    UsageError
-        A label is given for a file of several sensors, or two sensors have the same label.
+    Pressures with an accepted flag are converted to depths by TEOS-10 at the latitude [degrees].
+    Nominal heights are above the seabed [m].
     """
     found: list[InstrumentSeries] = []
     for label, path in instrument_series.files_given(given):
@@ -87,10 +75,7 @@ def _doubted(sensor: InstrumentSeries) -> InstrumentSeries:
 
 
 def depth_of(dbar: Floats, latitude: float) -> Floats:
-    """Convert pressures [dbar], relative to the atmosphere, to depths [m] by TEOS-10.
-
-    Infinite pressures give NaN.
-    """
+    """Convert pressures [dbar], relative to the atmosphere, to depths [m] by TEOS-10."""
     import gsw
 
     known = np.where(np.isfinite(dbar), dbar, np.nan)
@@ -171,13 +156,7 @@ def _from_csv(path: Path, latitude: float) -> list[InstrumentSeries]:
 
 
 def parse_flags(text: str) -> frozenset[int]:
-    """Parse a list of flags such as ``1,2``.
-
-    Raises
-    ------
-    UsageError
-        The text is not a list of flags from 0 to 8, or includes 8, the flag of interpolated values.
-    """
+    """Parse a list of flags such as ``1,2``; 8, the flag of interpolated values, is rejected."""
     try:
         flags = frozenset(int(part) for part in text.split(","))
     except ValueError:
@@ -202,13 +181,7 @@ _STANDARD = (
 
 
 def read_sea_level(path: Path) -> tuple[NDArray[np.datetime64], Floats]:
-    """Read a series of sea-surface heights above a datum; return increasing times and heights [m].
-
-    Raises
-    ------
-    InputError
-        The file is unreadable, has no height with a unit, or has an impossible height.
-    """
+    """Read sea-surface heights above a datum; return increasing times and heights [m]."""
     if path.is_file() and not cf_files.holds_arrays(path):
         table = read_time_columns(path, ("length",), "level[m]")
         if len(table.names) != 1:
@@ -242,8 +215,7 @@ def _refuse_far(path: Path, time: NDArray[np.datetime64], level: Floats) -> None
         raise InputError([Problem(str(path), 0, 0, message)])
 
 
-CONSTANT = 1e-6
-"""Range of depths up to which a sensor counts as constant [m]."""
+CONSTANT = 1e-6  # range of depths up to which a sensor counts as constant [m]
 MISPLACED = 20.0
 """Tolerance for the shallowest depth of a sensor against its place in still water [m].
 
@@ -255,8 +227,7 @@ ALIKE, APART = 0.03, 3.0
 """Relative tolerance of that ratio, doubled for several sensors, and least distance between
 exchanged sensors [m].
 """
-BELOW = 1.1
-"""Readings are too deep if they exceed the seabed by this factor and by `MISPLACED`."""
+BELOW = 1.1  # readings are too deep if they exceed the seabed by this factor and by `MISPLACED`
 
 
 def plausible(
@@ -264,21 +235,12 @@ def plausible(
 ) -> tuple[InstrumentSeries, list[str]]:
     """Remove implausible readings from a sensor, and return notes about the removal.
 
-    A reading is implausible if it is far shallower than the sensor in still water (taken on deck,
-    or a fill value), if it is far below the seabed, or if the sensor is stuck. Only the first of
-    several readings at the same time is kept. Depths are corrected if the readings on deck show
-    that the pressures are absolute. If most readings are too shallow or too deep, no reading is
-    removed, because the sensor itself is wrong; `unusable` then reports the sensor.
-
-    Parameters
-    ----------
-    place : depth of the sensor in still water [m]
-    seabed : depth of the water [m]
-
-    Raises
-    ------
-    UsageError
-        A third or more of the times of the sensor occur twice with different depths.
+    A reading is implausible if it is far shallower than the sensor in still water, at the depth
+    `place` [m] (taken on deck, or a fill value), if it is far below the seabed [m], or if the
+    sensor is stuck. Only the first of several readings at the same time is kept. Depths are
+    corrected if the readings on deck show that the pressures are absolute. If most readings are too
+    shallow or too deep, they are kept, because the sensor itself is wrong; `unusable` then reports
+    the sensor.
     """
     notes = []
     again = np.zeros(len(sensor.time), bool)
@@ -353,13 +315,9 @@ NEAR_AIR, ON_DECK = 2.5, 0.6
 def air_notes(depth: Floats, place: Floats) -> list[str]:
     """Return a remark if all depths seem to include atmospheric pressure.
 
-    In calm water, all depths then exceed the depths in still water by the equivalent of atmospheric
-    pressure; currents increase this excess. The sensor with the smallest excess decides.
-
-    Parameters
-    ----------
-    depth : (n, s) measured depths [m]
-    place : (s,) depths of the sensors in still water [m]
+    In calm water, the (n, s) measured depths then exceed the (s,) depths in still water [m] by the
+    equivalent of atmospheric pressure; currents increase this excess. The sensor with the smallest
+    excess decides.
     """
     off = np.array([_least(column) for column in depth.T]) - place
     alike = float(np.min(off[np.isfinite(off)], initial=np.inf))
@@ -385,14 +343,9 @@ most 0.3 % of trials.
 def metre_notes(measured: Floats, expected: Floats, latitude: float) -> list[str]:
     """Return a remark if depths in metres seem to be recorded as pressures in dbar, or the reverse.
 
-    The readings are then about 1 % low or high. The expected depths must agree as they are, because
-    a common error and a wrong length of the line together would have the same effect.
-
-    Parameters
-    ----------
-    measured, expected : (s,) measured depths of the sensors, and depths that do not depend on their
-        readings [m]
-    latitude : latitude of the mooring [degrees]
+    The (s,) measured depths are then about 1 % less or more than the expected depths [m], which do
+    not depend on these readings. The expected depths must agree as they are, because a common error
+    and a wrong length of the line together would have the same effect.
     """
     import gsw
 
@@ -416,17 +369,9 @@ def metre_notes(measured: Floats, expected: Floats, latitude: float) -> list[str
 def unusable(labels: Sequence[str], depth: Floats, place: Floats) -> dict[str, str]:
     """Return the labels of unusable sensors, each with the reason.
 
-    Parameters
-    ----------
-    labels : (s,) labels of the sensors
-    depth : (n, s) measured depths [m]
-    place : (s,) depths of the sensors in still water [m]
-
-    Raises
-    ------
-    UsageError
-        Two labels are exchanged, or half or more of the sensors are far from their places on the
-        line. A unit or the line is then wrong.
+    The sensors have (n, s) measured depths, and (s,) depths in still water [m]. A UsageError is
+    raised if two labels are exchanged, or if half or more of the sensors are far from their places
+    on the line, because a unit or the line is then wrong.
     """
     reasons: dict[str, str] = {}
     far_off: dict[str, str] = {}

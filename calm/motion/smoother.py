@@ -16,8 +16,7 @@ import numpy as np
 
 from calm.physics.line import Floats
 
-BLOCK = 256
-"""Number of times per stored block."""
+BLOCK = 256  # number of times per stored block
 
 
 @dataclass(frozen=True)
@@ -26,13 +25,12 @@ class StateSpace:
 
     Attributes
     ----------
-    fade : (n, q) factor by which each state decays since the previous time; the first row is unused
+    fade : (n, q) factor by which each state decays since the previous time; the first is unused
     steady : (q, q) stationary covariance of the states that decay
     stepped : (n, q) variance added to each persistent state since the previous time
-    first : (q, q) covariance of the states at the first time; their prior mean is 0 at all times
+    first : (q, q) covariance of the states at the first time; their prior mean is always 0
     seen : (n, m, q) derivatives of the readings with respect to the states
-    read : (n, m) readings; NaN if missing
-    noise : (n, m) variances of the errors of the readings
+    read, noise : (n, m) readings, NaN if missing, and variances of their errors
     """
 
     fade: Floats
@@ -44,10 +42,7 @@ class StateSpace:
     noise: Floats
 
     def added(self, time: int) -> Floats:
-        """Return the (q, q) covariance of the state noise between the previous time and this time.
-
-        `time` is the index of this time.
-        """
+        """Return the (q, q) covariance of the state noise since the previous time."""
         fade = self.fade[time]
         result = self.steady * (1.0 - np.outer(fade, fade))
         result.flat[:: len(result) + 1] += self.stepped[time]
@@ -74,9 +69,8 @@ class Smoothed:
     ----------
     times : slice of the times
     mean, covariance : (b, q) mean and (b, q, q) covariance of the states
-    pull, hold : vector r (b, q) and matrix N (b, q, q) of Durbin and Koopman. Given all readings,
-        the state noise before each time has mean Q r and covariance Q - Q N Q, where Q is its prior
-        covariance
+    pull, hold : vector r (b, q) and matrix N (b, q, q) of Durbin and Koopman: the state noise
+        before each time, of prior covariance Q, has the mean Q r and the covariance Q - Q N Q
     """
 
     times: slice

@@ -52,10 +52,8 @@ class HeldOut:
     ----------
     count : number of times with good pressures of this sensor and of all sensors in use
     bias : mean of estimated minus measured depth [m]
-    rms : root mean square of estimated minus measured depth, after subtraction of its mean over the
-        calm times [m]
-    linear_rms, pchip_rms : as `rms`, but for depths interpolated between the sensors in use, with
-        the functions `linear` and `pchip` of `calm.motion.remarks` [m]
+    rms : root mean square of the `difference` of estimated and measured depth [m]
+    linear_rms, pchip_rms : as `rms`, for depths interpolated by `linear` and `pchip` [m]
     coverage : share of the differences within the 95 % interval of the estimate
     """
 
@@ -110,11 +108,8 @@ class MotionEstimate:
     def plot(self, ax: Any = None) -> Any:
         """Draw the depths of the sensors over time, with their 95 % bands, and return the axes.
 
-        Measured depths are drawn as dots. Requires matplotlib.
-
-        Parameters
-        ----------
-        ax : axes of matplotlib; by default, new axes are created
+        Measured depths are drawn as dots. `ax` are axes of matplotlib; by default, new axes are
+        created.
         """
         if ax is None:
             from matplotlib.figure import Figure
@@ -163,19 +158,8 @@ def prepare(
 ) -> Task:
     """Estimate the common unknowns of the record, without the withheld sensors.
 
-    Parameters
-    ----------
-    mooring : mooring as in its file
-    measured : measurements, including the withheld sensors
-    names : names of the factors to estimate
-    hidden : labels of the withheld sensors
-    tell : function that receives progress messages
-
-    Raises
-    ------
-    UsageError
-        A withheld sensor does not exist, no sensor is left, or the line has no equilibrium that
-        fits the pressures.
+    The measurements include the withheld sensors, `hidden`; `names` are the factors to estimate.
+    Progress messages are passed to `tell`.
     """
     for label in hidden:
         if label not in measured.label:
@@ -214,15 +198,7 @@ def intervals(task: Task) -> dict[str, tuple[float, float, float]]:
 def judged(
     task: Task, measured: MooringMeasurements, result: Dataset, diagnosis: Sequence[Fault] = ()
 ) -> MotionEstimate:
-    """Compare a finished result with all measurements.
-
-    Parameters
-    ----------
-    task : input of the estimate
-    measured : measurements, including the withheld sensors
-    result : dataset of `calm motion`
-    diagnosis : diagnosed faults
-    """
+    """Compare a finished result of `calm motion` with all measurements and the withheld sensors."""
     used = task.measured
     alone = task.common.inferred
     plain = None if alone else np.asarray(result["plain_depth"].values, np.float64)
@@ -270,9 +246,8 @@ def judged(
 
 
 def knockdown(used: MooringMeasurements) -> Floats:
-    """Return at each time the knockdown (n,) of the highest sensor that has a pressure [m].
-
-    The knockdown is the depth of the sensor minus its minimum depth.
+    """Return the knockdown (n,) of the highest sensor that has a pressure, from its least depth
+    [m].
     """
     down = np.full(len(used.time), np.nan)
     for j in range(len(used.label)):
@@ -292,13 +267,8 @@ def judge_hidden(
 ) -> HeldOut:
     """Compare the estimate, and two interpolations between other sensors, with a withheld sensor.
 
-    Parameters
-    ----------
-    measured : measurements of all sensors
-    used : measurements of the sensors in use
-    label : label of the withheld sensor
-    depth, spread : (n,) estimated depth of the sensor, and its standard deviation [m]
-    still : (p,) depths in still water [m]
+    The sensor has an estimated depth (n,), and its standard deviation [m]; `still` are the depths
+    of all points in still water [m].
     """
     column = measured.label.index(label)
     own = measured.depth[:, column]
@@ -312,13 +282,7 @@ def judge_hidden(
 
 
 def several(measured: MooringMeasurements, hidden: Sequence[str]) -> list[str]:
-    """Return the labels of the sensors that a cross-validation withholds in turn.
-
-    Raises
-    ------
-    UsageError
-        Only one sensor is available.
-    """
+    """Return the labels of the sensors that a cross-validation withholds in turn, at least two."""
     rest = [label for label in measured.label if label not in hidden]
     if len(rest) < 2:
         raise UsageError("--cross-validate: at least two sensors are needed")
@@ -333,19 +297,7 @@ def cross_validated(
     tell: Callable[[str], None],
     workers: int | None = None,
 ) -> list[HeldOut]:
-    """Withhold each sensor in turn, in addition to `hidden`, and compare the estimate with it.
-
-    Parameters
-    ----------
-    mooring, measured, names, hidden : as in `prepare`
-    tell : function that receives progress messages
-    workers : number of threads
-
-    Raises
-    ------
-    UsageError
-        Only one sensor is available.
-    """
+    """Withhold each sensor in turn, in addition to `hidden`, and compare the estimate with it."""
     still = Forward(mooring, {}).still
     held = []
     for label in several(measured, hidden):
@@ -363,13 +315,11 @@ class SensorSeries:
 
     Attributes
     ----------
-    hidden : True if the estimate uses no pressure of this sensor, because the sensor was withheld
-        or has no pressure
+    hidden : True if the estimate uses no pressure of this sensor
     time : (n,) times
     measured : (n,) measured depths [m]; NaN if not measured
     estimated, spread : (n,) estimated depths and their standard deviations [m]
-    plain : (n,) depths computed from the currents alone [m]; None if `hidden`, or if currents were
-        not measured
+    plain : (n,) depths computed from the measured currents alone [m]; otherwise None
     """
 
     label: str
@@ -391,13 +341,7 @@ def depths_at(result: Dataset, point: int) -> tuple[Floats, Floats]:
 
 
 def series_of(study: MotionEstimate, measured: MooringMeasurements) -> list[SensorSeries]:
-    """Return the depths of all sensors from the top down, then those of the other instruments.
-
-    Parameters
-    ----------
-    study : the estimate
-    measured : measurements, including those of the withheld sensors
-    """
+    """Return the depths of all sensors from the top down, then those of the other instruments."""
     mooring, used, result = study.task.mooring, study.task.measured.label, study.dataset
     labels, columns = (
         labels_of(mooring),

@@ -40,12 +40,10 @@ class Suspect:
 
     Attributes
     ----------
-    fault : the fault
     column : (n, s) change in the measured depths per unit of the size of the fault
     wide : prior standard deviation of the size; 0 if the size is fixed
     log : logarithm of the prior probability of the fault
-    shift : (n, s) change in the measured depths by a fault of fixed size [m]; 0 if the size is
-        fitted
+    shift : (n, s) change in the measured depths by a fault of fixed size [m]; otherwise 0
     """
 
     fault: Fault
@@ -58,12 +56,8 @@ class Suspect:
 def line_suspects(task: Task, read: ReadCurrents, at: Linear, share: Floats) -> Iterator[Suspect]:
     """Yield possible faults of the line and its measured currents.
 
-    Parameters
-    ----------
-    read : currents at several times
-    at : depths of the line in these currents, with slopes with respect to the logarithm of a factor
-        on all speeds
-    share : elapsed share of the record at the times with an equilibrium
+    The line is given in currents at several times, with slopes by the logarithm of a factor on all
+    speeds; `share` is the elapsed share of the record at the times with an equilibrium.
     """
     factors = task.common.factors
     good = np.isfinite(at.depth).all(axis=1)
@@ -99,12 +93,11 @@ which a meter is reported.
 def meter_remarks(measured: MooringMeasurements, names: Sequence[str]) -> list[str]:
     """Return a remark on each current meter with rotated or mirrored readings, or a wrong unit.
 
-    A meter is reported if it disagrees with the two nearest meters although these agree with each
-    other. Agreement is measured by the complex correlation r of the currents over the whole record.
-    The phase of r is the mean angle between the two currents (Kundu 1976, J. Phys. Oceanogr. 6,
-    238-242). For n independent times, the phase has the standard deviation
-    sqrt((1 - r²) / (2 r² n)). Exchanged east and north components are found from the correlation
-    with the mirrored current.
+    A meter is reported if it disagrees with the two nearest meters although these agree. Agreement
+    is measured by the complex correlation r of the currents over the whole record. The phase of r
+    is the mean angle between the currents (Kundu 1976, J. Phys. Oceanogr. 6, 238-242), with a
+    standard deviation of sqrt((1 - r²) / (2 r² n)) for n independent times. Exchanged east and
+    north components are found from the correlation with the mirrored current.
     """
     flow = np.where(measured.flag <= GOOD, measured.u + 1j * measured.v, np.nan)
 
@@ -177,14 +170,9 @@ def torn(
     """Remove readings of two sensors that are farther apart in depth than along the line.
 
     The reading that is farther from the median of its sensor is removed. If half or more of the
-    readings of a sensor would be removed, all its readings are kept. Return the measurements, and
-    notes on the removal.
-
-    Parameters
-    ----------
-    measured : the measurements
-    distance : (p,) distances of the points from the top, along the line [m]
-    hidden : labels of sensors that are neither tested nor used to test others
+    readings of a sensor would be removed, all are kept. Distances (p,) of the points are from the
+    top, along the line [m]. The sensors `hidden` are neither tested nor used to test others. Also
+    return notes on the removal.
     """
     depth, place = measured.depth, distance[measured.point]
     used = [i for i, label in enumerate(measured.label) if label not in hidden]
@@ -213,14 +201,9 @@ to its usual change, and least size of a step [m].
 def common_step(measured: MooringMeasurements, still: Floats) -> Fault | None:
     """Find a step common to the depths of all sensors; return None if there is no such step.
 
-    Such a step means that the whole mooring has moved to another depth. A current lowers the lowest
-    sensor less than the highest sensor, whereas a sinking mooring lowers all sensors equally. The
-    search is for records without measured currents, where inferred currents would otherwise explain
-    the step.
-
-    Parameters
-    ----------
-    still : (p,) depths of the points in still water [m]
+    The whole mooring has then moved to another depth. A current lowers the lowest sensor less than
+    the highest, whereas a sinking mooring lowers all equally. The search is for records without
+    measured currents, where inferred currents would otherwise explain the step.
     """
     whole = np.flatnonzero(np.isfinite(measured.depth).all(axis=1))
     order = np.argsort(still[measured.point], kind="stable")

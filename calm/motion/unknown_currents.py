@@ -38,8 +38,7 @@ KNOTS, FINER = 6, 2.2
 """Number of knots, and the exponent of their spacing, which is finer near the top because currents
 vary most there.
 """
-DOWN = 0.9
-"""Share of the times at which the top of the line is at or above the uppermost knot."""
+DOWN = 0.9  # share of the times at which the top of the line is at or above the uppermost knot
 SURFACE, DECAY, LEAST = 0.3, 400.0, 0.03
 """Prior speed: value at the top [m/s], decay depth [m] (the scale of the thermocline), and a
 constant [m/s].
@@ -48,8 +47,7 @@ ALL, EACH, ALIKE = 0.7, 1.4, 0.5
 """Deviations of the logarithm of the prior speed, common to all knots and for each knot, and the
 share of the knots over which these are correlated.
 """
-PRIOR = 20.0
-"""Weight of the prior distribution, as a number of times of the record."""
+PRIOR = 20.0  # weight of the prior distribution, as a number of times of the record
 MOST_TIMES, TURNS, FIRST = 240, 12, 2
 """Number of times from which the distribution is learnt, number of iterations, and number of first
 iterations that leave the distribution unchanged.
@@ -59,12 +57,10 @@ STRONGER = 0.5
 
 At the other times, the tide hides the effect of the currents.
 """
-LONGEST = 1.0
-"""Maximum step of a logarithm."""
+LONGEST = 1.0  # maximum step of a logarithm
 SHARES = (0.03, 0.05, 0.07, 0.1, 0.15, 0.2, 0.3, 0.4)
 """Trial errors of the line, as shares of the knockdown of each stretch."""
-USUAL, WITHIN = 0.07, 0.7
-"""Prior median of the error share, and the deviation of its logarithm."""
+USUAL, WITHIN = 0.07, 0.7  # prior median of the error share, and the deviation of its logarithm
 SEABED = 0.0005
 """Prior deviation of the datum, as a share of the water depth.
 
@@ -74,16 +70,14 @@ LEAST_PART, HIGH, HIGH_KNOWN = 5.0, 3.0, 0.1
 """Percentile taken as the shallowest depth of a sensor, height above its still-water depth from
 which that depth is in doubt [m], and relative uncertainty of this height.
 """
-AGAIN = 3
-"""Number of iterations at a time, starting from a stored fit."""
+AGAIN = 3  # number of iterations at a time, starting from a stored fit
 
 
 def with_knots(measured: MooringMeasurements, mooring: Design) -> MooringMeasurements:
     """Return the measurements with knots of unknown current in place of their current levels.
 
-    The uppermost knot is at the depth of the top of the line in strong currents, because pressures
-    contain no information on the current above the line. This depth is computed from the readings
-    of the uppermost sensor.
+    Pressures contain no information on the current above the line, so the uppermost knot is at the
+    depth of its top in strong currents, from the readings of the uppermost sensor.
     """
     still, seabed = Forward(mooring, {}).still, float(mooring.water.depth)
     sensor = int(np.argmin(still[measured.point]))
@@ -119,17 +113,9 @@ def learn_currents(
 ) -> Common:
     """Estimate the distribution of the current speeds jointly with the common unknowns.
 
-    Parameters
-    ----------
-    mooring : mooring as in its file
-    measured : measurements with the knots as levels
-    names : names of the factors to estimate
-    tell : function that receives progress messages
-
-    Raises
-    ------
-    UsageError
-        The line has no equilibrium that fits the pressures.
+    The measurements have the knots as levels; `names` are the factors to estimate. Progress
+    messages are passed to `tell`. A UsageError is raised if no equilibrium of the line fits the
+    pressures.
     """
     part = measured.at(_chosen(measured))
     mean, covariance = assumed_law(part)
@@ -183,9 +169,8 @@ def learn_currents(
 def raised(mooring: Design, measured: MooringMeasurements) -> float:
     """Return measured minus still-water depth [m] of the sensor that is farthest above its place.
 
-    Currents only lower a line. If the shallowest readings of a sensor are far above its place in
-    still water, the water depth, a length or the place in the file is wrong. The result is
-    negative, or 0 if no sensor is far above its place.
+    Currents only lower a line, so the water depth, a length or the place in the file is then wrong.
+    The result is negative, or 0 if no sensor is far above its place.
     """
     still = Forward(mooring, {}).still
     depth = measured.depth - measured.moved[:, None]
@@ -265,10 +250,7 @@ def _chosen(measured: MooringMeasurements) -> Integers:
 
 
 def _worst(fit: _Fit, at: Linear, common: Common, used: Integers) -> Common:
-    """Estimate the relative error of the line: RMS of the trial values, weighted by likelihood.
-
-    Successive times with the same error count as one.
-    """
+    """Estimate the relative error of the line: RMS of the trial values, weighted by likelihood."""
     now, log = fit.posterior(at), []
     white = np.linalg.solve(np.linalg.cholesky(now.expected), now.innovation[:, :, None])
     alike = max(repeated(column) for column in white[:, :, 0].T)
@@ -296,10 +278,7 @@ def _placed(begun: Common, known: Common, fit: _Fit, at: Linear, found: Posterio
 
 
 def unknown_state(moments: LineResponse, common: Common) -> CurrentsState:
-    """Find the most likely currents at each time.
-
-    The search starts from the stored model whose depths are closest to the measured depths.
-    """
+    """Find the most likely currents at each time, from the stored model with the closest depths."""
     law, one = common.law, moments.measured
     assert law is not None and law.kept is not None
     read, kept, still = law.read(one.level_depth), law.kept, moments.forward.still
