@@ -28,13 +28,7 @@ from calm.dataset.discovery import (
 from calm.dataset.netcdf import Attributes, ResultLayout, down_the_line, labels, numbers, packed
 from calm.files.pieces import clamps_down
 from calm.motion.common_unknowns import Common
-from calm.motion.line_response import (
-    Forward,
-    LineResponse,
-    forwards_of,
-    labels_of,
-    points,
-)
+from calm.motion.line_response import Forward, LineResponse, forwards_of, labels_of, points
 from calm.motion.matching import serials_of
 from calm.motion.measured_currents import CurrentSmoother
 from calm.motion.measurements import MooringMeasurements, level_names

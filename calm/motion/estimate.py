@@ -37,11 +37,7 @@ class Posterior:
 
 
 def posterior(
-    one: MooringMeasurements,
-    at: Linear,
-    spread: Floats,
-    common: Common,
-    still: Floats,
+    one: MooringMeasurements, at: Linear, spread: Floats, common: Common, still: Floats
 ) -> Posterior:
     """Return the posterior of currents and depths, linearised at a state of the currents.
 

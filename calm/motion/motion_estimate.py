@@ -25,12 +25,7 @@ from calm.motion.correction import BLOCK, MeasuredRecord, Task, motion_layout, s
 from calm.motion.diagnosis import diagnosed
 from calm.motion.line_response import instruments_of
 from calm.motion.matching import without
-from calm.motion.measurements import (
-    MooringMeasurements,
-    joined,
-    read_currents,
-    without_spikes,
-)
+from calm.motion.measurements import MooringMeasurements, joined, read_currents, without_spikes
 from calm.motion.remarks import ALL, Fault
 from calm.motion.study import MotionEstimate, cross_validated, judged, prepare, several
 from calm.motion.suspects import common_step, distances_of, torn

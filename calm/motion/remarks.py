@@ -39,14 +39,13 @@ class Fault:
     Attributes
     ----------
     label : label of the sensor; `ALL` for all sensors together
-    kind : `moved`, `clock`, `gain`, `offset`, `drift`, `slip`, `exchanged`, or one of `OF_LINE`
+    kind : `moved`, `clock`, `gain`, `offset`, `drift`, `slip`, or one of `OF_LINE`
     value, low, high : size of the fault, and its 95 % interval: the lag of a `clock` [h]; a `gain`;
         the excess depth of an `offset` or `moved`, or at the end of a `drift` [m]; the distance
         down the line of a `slip` [m]; for `OF_LINE`, the factor on the value in the file or on the
         reading of the meter
     odds : odds in favour of this fault against all alternatives, including no fault
     since, until : start of a step, slip or drift, and end of a drift; otherwise NaT
-    other : label of the second of two sensors whose labels are exchanged
     rival : alternative explanations that are nearly as likely
     corrected : whether the fault has been corrected
     """
@@ -59,7 +58,6 @@ class Fault:
     odds: float = 0.0
     since: np.datetime64 = NO_TIME
     until: np.datetime64 = NO_TIME
-    other: str = ""
     rival: str = ""
     corrected: bool = False
 
@@ -80,7 +78,7 @@ class Fault:
 
     def same(self, other: Fault) -> bool:
         """True if the faults have the same kind and sensors, whatever their sizes."""
-        return (self.label, self.kind, self.other) == (other.label, other.kind, other.other)
+        return (self.label, self.kind) == (other.label, other.kind)
 
     def alike(self, other: Fault) -> bool:
         """True if the faults are the same, or if both concern the whole line or all currents."""
@@ -105,8 +103,8 @@ class Fault:
         """True if the odds are high enough to exclude other explanations."""
         return self.odds >= LIKELY
 
-    def sentence(self, rival: bool = True) -> str:
-        """Describe the fault in a sentence; if `rival` is true, append alternative explanations."""
+    def sentence(self) -> str:
+        """Describe the fault in a sentence, with its alternative explanations."""
         band = f"({self.low:+.2f} to {self.high:+.2f})"
         clock = "their clocks are" if self.label == ALL else "its clock is"
         way = "late" if self.value > 0.0 else "early"
@@ -148,13 +146,8 @@ class Fault:
                 f"it is {abs(self.value):.1f} m {below} its nominal position from {when} on; its "
                 "clamp has probably slipped"
             ),
-            "exchanged": f"its label and the label of {self.other} appear to be exchanged",
         }[self.kind]
-        also = (
-            (f", or {self.rival}; the pressures cannot distinguish these")
-            if rival and self.rival
-            else ""
-        )
+        also = f", or {self.rival}; the pressures cannot distinguish these" * bool(self.rival)
         return f"{self.label}: {text}{also}"
 
 

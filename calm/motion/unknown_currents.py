@@ -22,12 +22,7 @@ from numpy.typing import NDArray
 from calm.case import Design
 from calm.errors import UsageError
 from calm.motion import line_response
-from calm.motion.common_unknowns import (
-    Common,
-    common_beforehand,
-    fixed_slopes,
-    repeated,
-)
+from calm.motion.common_unknowns import Common, common_beforehand, fixed_slopes, repeated
 from calm.motion.currents_law import Linear, ReadCurrents, SpeedLaw
 from calm.motion.estimate import CurrentsState, Posterior, posterior
 from calm.motion.line_response import Forward, LineResponse
