@@ -62,21 +62,16 @@ class RecordProfile:
 
 @dataclass(frozen=True)
 class GriddedQuantity:
-    """Samples of a quantity, and the parameters of the field fitted to the samples.
-
-    Attributes
-    ----------
-    noise : standard deviation of sensor noise, in the unit of the quantity
-    in_time : whether the estimate at a time also uses the samples at the neighbouring times
-    beyond : factor on the standard deviations above the uppermost and below the lowest sensor, from
-        withholding each sensor in turn
-    """
+    """Samples of a quantity, and the parameters of the field fitted to the samples."""
 
     samples: Samples
     profile: RecordProfile
     scales: Scales
-    noise: float
+    noise: float  # standard deviation of sensor noise, in the unit of the quantity
+    # whether the estimate at a time also uses the samples at the neighbouring times
     in_time: bool = True
+    # factor on the standard deviations above the uppermost and below the lowest sensor, from
+    # withholding each sensor in turn
     beyond: float = 1.0
 
 

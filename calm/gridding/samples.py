@@ -27,25 +27,16 @@ _POINTS = (("clamp", "clamp_depth", "clamp_depth_sd"), ("component", "depth_top"
 
 @dataclass(frozen=True)
 class MooringDepths:
-    """Depths of p points of a line at n times.
+    """Depths of p points of a line at n times."""
 
-    Attributes
-    ----------
-    time : (n,) increasing times, with a resolution of a nanosecond
-    places : the points, each with a depth in weak currents (5th percentile of its depths)
-    depth, deviation : (n, p) depths and standard deviations [m]
-    place : latitude and longitude of the mooring [degrees]; empty if unknown
-    seabed : depth of the last piece, which is the anchor [m]; NaN if unknown
-    attributes : global attributes of the file
-    """
-
-    time: NDArray[np.datetime64]
+    time: NDArray[np.datetime64]  # (n,) increasing times, with a resolution of a nanosecond
+    # the points, each with a depth in weak currents (5th percentile of its depths)
     places: LinePlaces
-    depth: Floats
+    depth: Floats  # (n, p) depths and standard deviations [m]
     deviation: Floats
-    place: tuple[float, ...]
-    seabed: float
-    attributes: Mapping[str, Any]
+    place: tuple[float, ...]  # latitude and longitude of the mooring [degrees]; empty if unknown
+    seabed: float  # depth of the last piece, which is the anchor [m]; NaN if unknown
+    attributes: Mapping[str, Any]  # global attributes of the file
 
 
 def read_depths(path: Path) -> MooringDepths:
@@ -97,20 +88,13 @@ MOST = 5_000_000  # maximum number of times written: one a second for two months
 
 @dataclass(frozen=True)
 class Samples:
-    """Values of one quantity at n times, from s instruments listed from the top down.
+    """Values of one quantity at n times, from s instruments listed from the top down."""
 
-    Attributes
-    ----------
-    time, label : (n,) increasing times, and (s,) labels of the instruments
-    depth, deviation : (n, s) depths of the instruments and their standard deviations [m]
-    value : (n, s) values in the unit of the quantity; NaN if not measured
-    """
-
-    time: Times
+    time: Times  # (n,) increasing times, and (s,) labels of the instruments
     label: tuple[str, ...]
-    depth: Floats
+    depth: Floats  # (n, s) depths of the instruments and their standard deviations [m]
     deviation: Floats
-    value: Floats
+    value: Floats  # (n, s) values in the unit of the quantity; NaN if not measured
 
 
 def common_times(

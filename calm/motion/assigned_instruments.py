@@ -28,15 +28,10 @@ _ITEMS = ("deployed", "items")
 
 @dataclass(frozen=True)
 class AssignedInstruments:
-    """A mooring file to which the instruments of a list have been assigned.
+    """A mooring file to which the instruments of a list have been assigned."""
 
-    Attributes
-    ----------
-    text : new text of the file
-    assigned, doubts : sentences on the assigned instruments, and on doubtful or missing matches
-    """
-
-    text: str
+    text: str  # new text of the file
+    # sentences on the assigned instruments, and on doubtful or missing matches
     assigned: tuple[str, ...]
     doubts: tuple[str, ...]
 

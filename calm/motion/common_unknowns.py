@@ -26,22 +26,15 @@ class Common:
     """Estimate of the q unknowns common to a whole record.
 
     These are, in this order, the logarithms of the factors, the datum [m] and the offsets [m].
-
-    Attributes
-    ----------
-    factors : names of the estimated factors and their values
-    datum : correction added to the depths of the line [m]
-    offset : (s,) offset of each sensor [m]
-    covariance : (q, q) covariance of the unknowns
-    worst : error of the line that remains after all corrections, as a share of the knockdown
-    law : prior distribution of the inferred current speeds; None if currents were measured
     """
 
-    factors: Mapping[str, float]
-    datum: float
-    offset: Floats
-    covariance: Floats
+    factors: Mapping[str, float]  # names of the estimated factors and their values
+    datum: float  # correction added to the depths of the line [m]
+    offset: Floats  # (s,) offset of each sensor [m]
+    covariance: Floats  # (q, q) covariance of the unknowns
+    # error of the line that remains after all corrections, as a share of the knockdown
     worst: float = 0.07
+    # prior distribution of the inferred current speeds; None if currents were measured
     law: SpeedLaw | None = None
 
     @property
@@ -129,26 +122,17 @@ ROBUST = 4.0  # degrees of freedom of Student's t distribution for the misfit at
 
 @dataclass(frozen=True)
 class LinearLaw:
-    """Linear model of the readings at n times, for the unknowns of the whole record.
+    """Linear model of the readings at n times, for the unknowns of the whole record."""
 
-    Attributes
-    ----------
-    time, share : (n,) times, and the share of the record that has elapsed (0 to 1)
-    known : (n, s) whether a reading exists
-    raw : (n, s) measured minus computed depths [m], with all unknowns zero
-    left : (n, s) as `raw`, but with the unknowns at the state of linearisation
-    expected : (n, s, s) expected covariance of `left` [m²]
-    fixed : (n, s, q) derivatives of the readings with respect to the unknowns of `Common`
-    fall : (n, s) increase in the depth of each sensor per metre that it slips down the line
-    """
-
+    # (n,) times, and the share of the record that has elapsed (0 to 1)
     time: NDArray[np.datetime64]
     share: Floats
-    known: NDArray[np.bool_]
-    raw: Floats
-    left: Floats
-    expected: Floats
-    fixed: Floats
+    known: NDArray[np.bool_]  # (n, s) whether a reading exists
+    raw: Floats  # (n, s) measured minus computed depths [m], with all unknowns zero
+    left: Floats  # (n, s) as `raw`, but with the unknowns at the state of linearisation
+    expected: Floats  # (n, s, s) expected covariance of `left` [m²]
+    fixed: Floats  # (n, s, q) derivatives of the readings with respect to the unknowns of `Common`
+    # (n, s) increase in the depth of each sensor per metre that it slips down the line
     fall: Floats
 
     @cached_property

@@ -22,20 +22,12 @@ class ReadCurrents:
 
 @dataclass(frozen=True)
 class Linear:
-    """Depths of the points, linearised about a state of the currents.
+    """Depths of the points, linearised about a state of the currents."""
 
-    Attributes
-    ----------
-    logs : (n, g) logarithms of the factors on the currents, which are the state
-    depth : (n, p) depths at the state [m]
-    slope : (n, p, g) derivatives of the depths with respect to the state
-    common : (n, p, f) derivatives by the logarithms of the common factors
-    """
-
-    logs: Floats
-    depth: Floats
-    slope: Floats
-    common: Floats
+    logs: Floats  # (n, g) logarithms of the factors on the currents, which are the state
+    depth: Floats  # (n, p) depths at the state [m]
+    slope: Floats  # (n, p, g) derivatives of the depths with respect to the state
+    common: Floats  # (n, p, f) derivatives by the logarithms of the common factors
 
     def moved(self, logs: Floats, depth: Floats) -> Linear:
         """Return the model at another state of known depths, with slopes updated by Broyden's
@@ -51,17 +43,12 @@ class Linear:
 
 @dataclass(frozen=True)
 class SpeedLaw:
-    """Log-normal prior distribution of the current speeds at k knots.
+    """Log-normal prior distribution of the current speeds at k knots."""
 
-    Attributes
-    ----------
-    mean, covariance : (k,) mean and (k, k) covariance of the logarithms of the speeds [m/s]
-    kept : stored models of the line: first at the mean speeds, then at the times from which the
-        distribution was learnt; their states are relative to `mean`
-    """
-
-    mean: Floats
+    mean: Floats  # (k,) mean and (k, k) covariance of the logarithms of the speeds [m/s]
     covariance: Floats
+    # stored models of the line: first at the mean speeds, then at the times from which the
+    # distribution was learnt; their states are relative to `mean`
     kept: Linear | None = None
 
     def read(self, level: Floats) -> ReadCurrents:

@@ -57,20 +57,13 @@ FEWEST = 20  # least number of times for a diagnosis
 
 @dataclass(frozen=True)
 class _Found:
-    """Likelihood of the pressures with a set of faults.
+    """Likelihood of the pressures with a set of faults."""
 
-    Attributes
-    ----------
-    log : logarithm of the likelihood
-    value, deviation : size of the last fault, and its standard deviation
-    left : (n, s) residuals [m]
-    pulls : (n,) derivative of the log-likelihood of each time by the size of the last fault
-    """
-
-    log: float
-    value: float
+    log: float  # logarithm of the likelihood
+    value: float  # size of the last fault, and its standard deviation
     deviation: float
-    left: Floats
+    left: Floats  # (n, s) residuals [m]
+    # (n,) derivative of the log-likelihood of each time by the size of the last fault
     pulls: Floats
 
 

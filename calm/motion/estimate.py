@@ -16,23 +16,14 @@ from calm.physics.line import Floats
 
 @dataclass(frozen=True)
 class Posterior:
-    """Posterior of the currents, given the pressures.
+    """Posterior of the currents, given the pressures."""
 
-    Attributes
-    ----------
-    logs : (n, g) logarithms of the factors on the currents, relative to the prior mean
-    sea : (n,) height of the sea surface above its mean [m]
-    depth, variance : (n, p) depths of the points [m] and their variances [m²]
-    evidence : (n,) log probability density of the measured depths
-    innovation, expected : (n, s) measured minus predicted depths [m], and covariance (n, s, s)
-    """
-
-    logs: Floats
-    sea: Floats
-    depth: Floats
+    logs: Floats  # (n, g) logarithms of the factors on the currents, relative to the prior mean
+    sea: Floats  # (n,) height of the sea surface above its mean [m]
+    depth: Floats  # (n, p) depths of the points [m] and their variances [m²]
     variance: Floats
-    evidence: Floats
-    innovation: Floats
+    evidence: Floats  # (n,) log probability density of the measured depths
+    innovation: Floats  # (n, s) measured minus predicted depths [m], and covariance (n, s, s)
     expected: Floats
 
 

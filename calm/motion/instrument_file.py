@@ -44,40 +44,25 @@ from calm.whole_file import beside
 if TYPE_CHECKING:
     from xarray import Dataset
 
-SEVERAL = ("depth", "depth_sd", "depth_qc")
-"""Variables added to a file of several instruments.
-
-For a single instrument, the names are in upper case.
-"""
-ONE = tuple(name.upper() for name in SEVERAL)
+SEVERAL = ("depth", "depth_sd", "depth_qc")  # variables added to a file of several instruments
+ONE = tuple(name.upper() for name in SEVERAL)  # and of a single instrument
 _OF_OLD = ("DEPTH_quality_control", "DEPTH_UNCERTAINTY", "INSTRUMENT_DEPTH")
-NOMINAL = "NOMINAL_DEPTH"
-"""New name of the nominal depth of a single instrument, if its old name was `DEPTH`."""
+NOMINAL = "NOMINAL_DEPTH"  # new name of the nominal depth `DEPTH` of a single instrument
 _TIMES = ("time", "TIME", "Time")
-_OF_MOTION = ("title", "keywords", "references")
-"""Attributes of a result of `calm motion` that describe the result itself."""
+_OF_MOTION = ("title", "keywords", "references")  # attributes that describe a motion file itself
 
 
 @dataclass(frozen=True)
 class Instruments:
-    """A file of one or more instruments, to which estimated depths are to be added.
+    """A file of one or more instruments, to which estimated depths are to be added."""
 
-    Attributes
-    ----------
-    path : path of the file
-    clock, dimension : names of the time variable and of the time dimension
-    along : name of the dimension of the instruments; None for a single instrument
-    time : (n,) times
-    who : identities of the instruments
-    point : point of the line for each instrument; None for an unmatched instrument
-    """
-
-    path: Path
-    clock: str
+    path: Path  # path of the file
+    clock: str  # names of the time variable and of the time dimension
     dimension: str
-    along: str | None
-    time: NDArray[np.datetime64]
-    who: tuple[Identity, ...]
+    along: str | None  # name of the dimension of the instruments; None for a single instrument
+    time: NDArray[np.datetime64]  # (n,) times
+    who: tuple[Identity, ...]  # identities of the instruments
+    # point of the line for each instrument; None for an unmatched instrument
     point: tuple[int | None, ...]
 
     @property
@@ -99,8 +84,8 @@ def read_instruments(given: Path, line: LinePlaces) -> tuple[list[Instruments], 
     except UsageError as error:
         raise UsageError(f"--onto: {given}: {error}") from None
     each = iter(range(len(everyone)))
-    return [replace(file, point=tuple(points.get(next(each)) for _ in file.who)) for file in found
-            ], notes  # fmt: skip
+    matched = [tuple(points.get(next(each)) for _ in file.who) for file in found]
+    return [replace(one, point=point) for one, point in zip(found, matched, strict=True)], notes
 
 
 def _read(path: Path, seabed: float) -> Instruments:
@@ -118,9 +103,8 @@ def _read(path: Path, seabed: float) -> Instruments:
         dimension = str(dataset[clock].dims[0])
         along, who = _who(dataset, dimension, seabed, path)
         _refuse_depths(dataset, path, dimension, along)
-        return Instruments(
-            path, clock, dimension, along, cf_files.read_times(dataset, clock), who, ()
-        )
+        times = cf_files.read_times(dataset, clock)
+        return Instruments(path, clock, dimension, along, times, who, ())
 
 
 def _who(
@@ -144,20 +128,15 @@ def _who(
 
 def _refuse_depths(dataset: Dataset, path: Path, time: str, along: str | None) -> None:
     names = ONE if along is None else SEVERAL
-    counted = [name for name in names if dataset.sizes.get(name, 1) > 1]
-    if along in names:
-        counted.append(str(along))
+    counted = [name for name in names if dataset.sizes.get(name, 1) > 1 or name == along]
     if counted:
         raise UsageError(
             f"--onto: `{counted[0]}` is a dimension of {path}; rename it, because a variable with "
             "two dimensions cannot have the name of one of them"
         )
-    there = [
-        name for name in names
-        if name in dataset.variables and (along is not None or time in dataset[name].dims)
-    ]  # fmt: skip
-    if there:
-        raise UsageError(f"--onto: {path} already has `{there[0]}`; rename that variable")
+    for name in names:
+        if name in dataset.variables and (along is not None or time in dataset[name].dims):
+            raise UsageError(f"--onto: {path} already has `{name}`; rename that variable")
 
 
 def write_depths(
@@ -176,14 +155,11 @@ def write_depths(
     import xarray as xr
 
     shape = len(instruments.time), len(instruments.who)
-    depth, spread = np.full(shape, np.nan), np.full(shape, np.nan)
+    depth, spread = np.full((2, *shape), np.nan)
     flag = np.full(shape, MISSING, np.int8)
-    lost = []
-    for j, point in enumerate(instruments.point):
-        if point is None:
-            lost.append(instruments.who[j].named)
-            continue
-        depth[:, j], spread[:, j], flag[:, j] = at_own_times(result, point, instruments.time, gap)
+    for j, at in enumerate(instruments.point):
+        if at is not None:
+            depth[:, j], spread[:, j], flag[:, j] = at_own_times(result, at, instruments.time, gap)
     # raw values, except texts: characters would be split again
     if engine := cf_files.engine_of(instruments.path):
         with xr.open_dataset(
@@ -225,7 +201,8 @@ def write_depths(
     _describe(copy, instruments, inputs, result)
     with beside(output) as part:
         copy.to_netcdf(part, engine="h5netcdf")
-    return lost
+    pairs = zip(instruments.who, instruments.point, strict=True)
+    return [who.named for who, point in pairs if point is None]
 
 
 def at_own_times(
@@ -309,15 +286,14 @@ def _archived(copy: Dataset, instruments: Instruments, result: Dataset) -> None:
     import xarray as xr
 
     stations, where = station(_mooring(result), _place(copy, result), "the anchor")
-    names = where.upper().split()
     for one in stations:
         copy[one.name.upper()] = xr.Variable((), one.values, one.described)
     measured = [str(name) for name in copy.data_vars if copy[name].dims == (instruments.dimension,)]
+    coordinates = " ".join(where.upper().split())
     for name in measured:
         copy[name].attrs |= {
-            "coordinates": " ".join(names),
-            "coverage_content_type": "physicalMeasurement",
-        }
+            "coordinates": coordinates, "coverage_content_type": "physicalMeasurement"
+        }  # fmt: skip
     product = "".join(c if c.isalnum() else "-" for c in instruments.path.stem)
     copy.attrs |= {
         **ARCHIVED,

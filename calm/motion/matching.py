@@ -20,21 +20,13 @@ from calm.records.instrument_series import Identity, who_along
 
 @dataclass(frozen=True)
 class LinePlaces:
-    """The p points of a line to which instruments may be matched.
+    """The p points of a line to which instruments may be matched."""
 
-    Attributes
-    ----------
-    name : path of the mooring file
-    label, serial : (p,) labels and serial numbers; the serial number is empty if unknown
-    clamps : number of clamps, which precede the other points
-    still : (p,) depths in still water [m]
-    """
-
-    name: str
-    label: tuple[str, ...]
+    name: str  # path of the mooring file
+    label: tuple[str, ...]  # (p,) labels and serial numbers; the serial number is empty if unknown
     serial: tuple[str, ...]
-    clamps: int
-    still: Floats
+    clamps: int  # number of clamps, which precede the other points
+    still: Floats  # (p,) depths in still water [m]
 
 
 def places_of(mooring: Design) -> LinePlaces:
@@ -68,24 +60,17 @@ def without(measured: MooringMeasurements, labels: Sequence[str]) -> MooringMeas
 
 @dataclass(frozen=True)
 class Clock:
-    """Clock error of an instrument, which grows linearly from zero.
+    """Clock error of an instrument, which grows linearly from zero."""
 
-    Attributes
-    ----------
-    since, checked : times at which the clock was set, and compared with the true time
-    late : lag of the clock at the time `checked` [s]; positive if the clock was behind
-    """
-
-    since: np.datetime64
+    since: np.datetime64  # times at which the clock was set, and compared with the true time
     checked: np.datetime64
-    late: float
+    late: float  # lag of the clock at the time `checked` [s]; positive if the clock was behind
 
     def true_times(self, time: NDArray[np.datetime64]) -> NDArray[np.datetime64]:
         """Correct the times (n,) of readings for the error of the clock."""
         share = (time - self.since) / (self.checked - self.since)
         late = np.round(self.late * 1e9 * np.maximum(share, 0.0)).astype("m8[ns]")
-        true: NDArray[np.datetime64] = time + late
-        return true
+        return np.asarray(time + late)
 
     @property
     def sentence(self) -> str:
@@ -128,18 +113,10 @@ def hung_currents(
         return one, []
     with cf_files.opened(path) as dataset:
         levels = one.u.shape[1]
-        along: list[str | None] = [
-            str(dim) for dim, size in dataset.sizes.items() if size == levels > 1
-        ]
-        who: Sequence[Identity] = ()
-        if levels == 1:
-            along.append(None)
-        for dim in along:
-            who = who_along(dataset, dim, seabed, path.name)
-            if any(each.serial or each.label for each in who):
-                break
-        else:
-            return one, []
+        sized = [str(dim) for dim, size in dataset.sizes.items() if size == levels]
+        along: Sequence[str | None] = sized if levels > 1 else [None]
+        each_way = [who_along(dataset, dim, seabed, path.name) for dim in along]
+    who = next((who for who in each_way if any(one.serial or one.label for one in who)), [])
     place = np.array([each.nominal for each in who])
     own = np.nanmedian(np.where(np.isfinite(one.depth), one.depth, np.nan), axis=0)
     if len(who) != levels or not np.nanmax(np.abs(own - place), initial=0.0) < CERTAIN:
@@ -151,7 +128,7 @@ def hung_currents(
     label = tuple(line.label[points[i]] if i in points else "" for i in range(levels))
     hung = np.array([bool(each) for each in label])
     moved = replace(one, label=label, depth=np.where(hung, np.nan, one.depth))
-    named = ", ".join(each for each in label if each)
+    named = ", ".join(filter(None, label))
     return moved, [
         *sentences,
         f"{one.source}: {named} move with the line, and so do their currents",

@@ -104,20 +104,13 @@ FURTHEST = 0.7  # maximum logarithm of a factor
 
 @dataclass(frozen=True)
 class Knots:
-    """Depths (knots) at which the current is estimated, and interpolation from knots to levels.
+    """Depths (knots) at which the current is estimated, and interpolation from knots to levels."""
 
-    Attributes
-    ----------
-    depth : (K,) depths of the knots in still water, increasing [m]
-    level : (k, K) weights with which the knots contribute to the current at each level
-    measured : indices of the levels that coincide with a knot, and the indices of these knots
-    seabed : depth of the water [m]
-    """
-
-    depth: Floats
-    level: Floats
+    depth: Floats  # (K,) depths of the knots in still water, increasing [m]
+    level: Floats  # (k, K) weights with which the knots contribute to the current at each level
+    # indices of the levels that coincide with a knot, and the indices of these knots
     measured: tuple[NDArray[np.int64], NDArray[np.int64]]
-    seabed: float
+    seabed: float  # depth of the water [m]
 
     def at(self, levels: Floats) -> Floats:
         """Return depths (n, K) of the knots, which move with the levels (n, k) [m]."""
@@ -189,20 +182,13 @@ class Columns:
 
 @dataclass(frozen=True)
 class ErrorScales:
-    """Sizes and correlation time of the errors, estimated from the record.
+    """Sizes and correlation time of the errors, estimated from the record."""
 
-    Attributes
-    ----------
-    flag : factor on the error of a current meter, by quality flag
-    share : error of each stretch of the line, as a share of the knockdown of the stretch
-    tide : standard deviation of the tide [m]
-    hours : correlation time of the current [h]
-    """
-
-    flag: Mapping[int, float]
+    flag: Mapping[int, float]  # factor on the error of a current meter, by quality flag
+    # error of each stretch of the line, as a share of the knockdown of the stretch
     share: float = SHARE
-    tide: float = common_unknowns.TIDE
-    hours: float = CURRENT_HOURS
+    tide: float = common_unknowns.TIDE  # standard deviation of the tide [m]
+    hours: float = CURRENT_HOURS  # correlation time of the current [h]
 
 
 class CurrentSmoother:

@@ -32,34 +32,23 @@ FREE = -1  # index for a level without a point or a sensor
 
 @dataclass(frozen=True)
 class MooringMeasurements:
-    """Currents and depths at n times, from s sensors and k levels.
+    """Currents and depths at n times, from s sensors and k levels."""
 
-    Attributes
-    ----------
-    time : (n,) increasing times, to the nanosecond
-    label : (s,) labels of the sensors
-    point : (s,) points of the sensors, as defined in `calm.motion.line_response.Forward`
-    depth : (n, s) depths of the sensors from their pressures [m]; NaN if missing or rejected
-    level_depth : (n, k) depths of the levels [m]; NaN for levels on the line
-    level_point : (k,) points of the levels on the line; `FREE` for fixed levels
-    u, v : (n, k) eastward and northward current [m/s]; NaN if missing
-    flag : (n, k) quality flags of the current; 0 if the file has no flags
-    tide : (n,) height of the sea surface above mean sea level [m]; None if unknown
-    false : (n,) whether an impossible current was removed; None if none was removed
-    sunk : (n,) increase in depth of the whole mooring since the start [m]; None if it never moved
-    """
-
-    time: NDArray[np.datetime64]
-    label: tuple[str, ...]
-    point: Integers
+    time: NDArray[np.datetime64]  # (n,) increasing times, to the nanosecond
+    label: tuple[str, ...]  # (s,) labels of the sensors
+    point: Integers  # (s,) points of the sensors, as defined in `calm.motion.line_response.Forward`
+    # (n, s) depths of the sensors from their pressures [m]; NaN if missing or rejected
     depth: Floats
-    level_depth: Floats
-    level_point: Integers
-    u: Floats
+    level_depth: Floats  # (n, k) depths of the levels [m]; NaN for levels on the line
+    level_point: Integers  # (k,) points of the levels on the line; `FREE` for fixed levels
+    u: Floats  # (n, k) eastward and northward current [m/s]; NaN if missing
     v: Floats
-    flag: NDArray[np.int8]
+    flag: NDArray[np.int8]  # (n, k) quality flags of the current; 0 if the file has no flags
+    # (n,) height of the sea surface above mean sea level [m]; None if unknown
     tide: Floats | None = None
+    # (n,) whether an impossible current was removed; None if none was removed
     false: NDArray[np.bool_] | None = None
+    # (n,) increase in depth of the whole mooring since the start [m]; None if it never moved
     sunk: Floats | None = None
 
     @property
@@ -107,8 +96,7 @@ def level_names(measured: MooringMeasurements, labels: Sequence[str]) -> tuple[s
     names = []
     for k, point in enumerate(measured.level_point.tolist()):
         depth = measured.level_depth[:, k]
-        known = depth[np.isfinite(depth)]
-        at = f"{known.mean():.1f} m" if known.size else f"level {k + 1}"
+        at = f"{np.nanmean(depth):.1f} m" if np.isfinite(depth).any() else f"level {k + 1}"
         names.append(at if point == FREE else labels[point])
     return tuple(names)
 
@@ -171,16 +159,13 @@ def interpolated(time: Times, value: Floats, wanted: Times, gap: np.timedelta64)
 
 def _measured_at(one: InstrumentSeries, wanted: Times, gap: np.timedelta64) -> Floats:
     """Interpolate depths to other times; a reading at exactly that time is used even if missing."""
-    result = interpolated(one.time, one.value, wanted, gap)
     at = np.minimum(np.searchsorted(one.time, wanted), len(one.time) - 1)
-    own: Floats = np.where(one.time[at] == wanted, one.value[at], result)
-    return own
+    between = interpolated(one.time, one.value, wanted, gap)
+    return np.where(one.time[at] == wanted, one.value[at], between)
 
 
-FAR_NEIGHBOURS = 4.0
-"""Maximum span between the readings before and after a time, in steps of the record."""
-SPIKE, ALIKE = 6.0, 3.0
-"""Deviations of a spike, and deviations below which all others agree with their neighbours."""
+FAR_NEIGHBOURS = 4.0  # maximum steps between the readings before and after a time
+SPIKE, ALIKE = 6.0, 3.0  # deviations of a spike, and limit for all other sensors
 
 
 def without_spikes(
@@ -223,15 +208,11 @@ def exclude_readings(
 
     Also return the label, number of readings, and first depth [m] and time of each such sensor.
     """
+    first = [(j, at) for j, at in enumerate(wrong.argmax(axis=0).tolist()) if wrong[at, j]]
+    counts, time = wrong.sum(axis=0).tolist(), np.datetime_as_string(measured.time, "s")
     excluded = [
-        (
-            measured.label[j],
-            int(wrong[:, j].sum()),
-            float(measured.depth[at, j]),
-            str(np.datetime_as_string(measured.time[at], "s")),
-        )
-        for j, at in enumerate(wrong.argmax(axis=0).tolist())
-        if wrong[at, j]
+        (measured.label[j], counts[j], float(measured.depth[at, j]), str(time[at]))
+        for j, at in first
     ]
     return replace(measured, depth=np.where(wrong, np.nan, measured.depth)), excluded
 
@@ -283,18 +264,10 @@ def joined(
             raise UsageError("--sea-level: the file covers none of the times of the estimate")
         tide = np.nan_to_num(tide - np.nanmean(tide))
     when = [one.time[one.false] for one in currents if one.false is not None]
+    false = np.isin(time, np.concatenate(when)) if when else None
+    hung, names = np.array([c[1] for c in columns], np.int64), [labels[at] for at in point.tolist()]
     measured = MooringMeasurements(
-        time,
-        tuple(labels[where] for where in point.tolist()),
-        point,
-        depth,
-        level,
-        np.array([column[1] for column in columns], np.int64),
-        u,
-        v,
-        flag.astype(np.int8),
-        tide,
-        np.isin(time, np.concatenate(when)) if when else None,
+        time, tuple(names), point, depth, level, hung, u, v, flag.astype(np.int8), tide, false
     )
     both = (np.isfinite(u) & np.isfinite(v)).any(axis=1) & np.isfinite(depth).any(axis=1)
     if currents and not both.any():
@@ -310,35 +283,25 @@ def _nearest(one: CurrentMeasurements, k: int, time: Times) -> NDArray[np.int8]:
     after = np.searchsorted(one.time, time)
     upper, lower = np.minimum(after, len(one.time) - 1), np.maximum(after - 1, 0)
     exact = one.time[upper] == time
-    flags = np.maximum(one.flag[upper, k], one.flag[lower, k])
-    flags = np.where(exact, one.flag[upper, k], flags)
+    flags = np.maximum(one.flag[upper, k], one.flag[np.where(exact, upper, lower), k])
     outside = (after == len(one.time)) | ((after == 0) & ~exact)
     return np.where(outside, MISSING, flags).astype(np.int8)
 
 
 @dataclass(frozen=True)
 class CurrentMeasurements:
-    """Currents of one file, at n times and k levels.
+    """Currents of one file, at n times and k levels."""
 
-    Attributes
-    ----------
-    time : (n,) increasing times, to the nanosecond
-    depth : (n, k) depths of the levels [m]; NaN for levels on the line
-    label : (k,) label of the part of the line at each level; empty for levels at fixed depths
-    u, v : (n, k) eastward and northward current [m/s]
-    flag : (n, k) quality flags; 0 if the file has no flags
-    source, notes : name of the file, and remarks on the file
-    false : (n,) whether an impossible current was removed; None if none was removed
-    """
-
-    time: NDArray[np.datetime64]
-    depth: Floats
+    time: NDArray[np.datetime64]  # (n,) increasing times, to the nanosecond
+    depth: Floats  # (n, k) depths of the levels [m]; NaN for levels on the line
+    # (k,) label of the part of the line at each level; empty for levels at fixed depths
     label: tuple[str, ...]
-    u: Floats
+    u: Floats  # (n, k) eastward and northward current [m/s]
     v: Floats
-    flag: NDArray[np.int8]
-    source: str
+    flag: NDArray[np.int8]  # (n, k) quality flags; 0 if the file has no flags
+    source: str  # name of the file, and remarks on the file
     notes: tuple[str, ...] = ()
+    # (n,) whether an impossible current was removed; None if none was removed
     false: NDArray[np.bool_] | None = None
     cards: tuple[ReadCard, ...] = ()
 
@@ -363,17 +326,14 @@ def read_currents(
         with open_record(path, terms) as record:
             depth, u, v, _ = record.profiles(0, record.count)
             marks = record.flags(0, record.count)
+            marks = np.zeros(u.shape, np.int8) if marks is None else marks
+            notes = tuple(note for note in record.notes if note not in RULES)
+            depth, labels = np.broadcast_to(depth, u.shape).copy(), record.labels
+            labels = labels or ("",) * u.shape[1]
             mine = CurrentMeasurements(
-                np.asarray(record.time),
-                np.broadcast_to(depth, u.shape).copy(),
-                record.labels or ("",) * u.shape[1],
-                u,
-                v,
-                np.zeros(u.shape, np.int8) if marks is None else marks,
-                path.name,
-                tuple(note for note in record.notes if note not in RULES),
+                np.asarray(record.time), depth, labels, u, v, marks, path.name, notes,
                 cards=record.cards,
-            )
+            )  # fmt: skip
         if label:
             if len(mine.label) > 1:
                 raise UsageError(

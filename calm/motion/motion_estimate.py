@@ -39,8 +39,7 @@ if TYPE_CHECKING:
 
 
 _MATCHES = ("label", "height", "depth")
-CORRECTABLE = ("clock", "gain", "offset", "drift", "air")
-"""Correctable errors of a sensor: faults of `calm.motion.remarks.Fault`, and air pressure."""
+CORRECTABLE = ("clock", "gain", "offset", "drift", "air")  # kinds of `Fault`, and air pressure
 GAP = np.timedelta64(2, "h")  # default limit on the gap over which values are interpolated
 
 
@@ -154,8 +153,7 @@ class RecoveredMooring:
             mooring.file.environment.maximum_speed,
         )  # fmt: skip
         for i, text in enumerate(self.currents):
-            path = split_label(text)[1]
-            read[i], more = matching.hung_currents(read[i], path, line, seabed)
+            read[i], more = matching.hung_currents(read[i], split_label(text)[1], line, seabed)
             notes += more
         notes += dict.fromkeys(f"{one.source}: {one.note}" for one in given if one.note)
         self.cards = [*(card for one in read for card in one.cards), *of_files.values()]
@@ -252,12 +250,10 @@ class RecoveredMooring:
             task = self._prepared(tell)
         self.task = task
         options = {
-            "fit": sorted(self.names),
-            "hold_out": sorted(self.hidden),
-            "without": sorted(self.without),
-            "correct": self.source.get("corrected", ""),
+            "fit": sorted(self.names), "hold_out": sorted(self.hidden),
+            "without": sorted(self.without), "correct": self.source.get("corrected", ""),
             "sensors": list(self.measured.label),
-        }
+        }  # fmt: skip
         text = resolved_input(self.mooring, self.measured.time, {"options": options})
         measured, arrays = InputHash(text), vars(self.measured).items()
         measured.add(one for name, one in arrays if name != "label")
@@ -265,8 +261,7 @@ class RecoveredMooring:
         layout = motion_layout(task, record)
         more = {**with_input(text), **measured.attributes()}
         layout = replace(layout, attributes={**layout.attributes, **more})
-        starts = range(0, len(self.measured.time), BLOCK)
-        extent: list[np.float32] = []
+        starts, extent = range(0, len(self.measured.time), BLOCK), list[np.float32]()
         solve = partial(solve_times, task, layout, extent)
         with closing(in_threads(solve, starts, workers)) as solved:
             return write_solved(
@@ -274,21 +269,17 @@ class RecoveredMooring:
             )
 
     def study(
-        self,
-        result: Dataset,
-        tell: Callable[[str], None] = lambda _: None,
+        self, result: Dataset, tell: Callable[[str], None] = lambda _: None,
         workers: int | None = None,
-    ) -> MotionEstimate:
+    ) -> MotionEstimate:  # fmt: skip
         """Compare a finished result of `estimate` with all measurements."""
         faults = (*self._faults, *self.moved, *diagnosed(self.task))
         study = replace(judged(self.task, self.measured, result, faults), notes=tuple(self.notes))
-        if self.cross_validate:
-            each = cross_validated(
-                self.mooring, self.measured, self.names, self.hidden, tell, workers
-            )
-            held = {**study.held_out, **{one.label: one for one in each}}
-            study = replace(study, held_out=held)
-        return study
+        if not self.cross_validate:
+            return study
+        given = self.mooring, self.measured, self.names, self.hidden
+        held = {one.label: one for one in cross_validated(*given, tell, workers)}
+        return replace(study, held_out={**study.held_out, **held})
 
 
 def estimate_motion(
@@ -339,20 +330,11 @@ def estimate_motion(
     with TemporaryDirectory() as name:
         folder = Path(name)
         recovery = RecoveredMooring(
-            mooring,
-            as_files(pressures, folder, "pressures"),
-            as_files(currents, folder, "currents"),
-            match,
-            fit,
-            hold_out,
-            cross_validate,
-            correct,
-            None if sea_level is None else Path(sea_level),
-            ",".join(map(str, flags)),
-            GAP if gap is None else np.timedelta64(round(gap * 1e9), "ns"),
-            declination,
-            without,
-        )
+            mooring, as_files(pressures, folder, "pressures"),
+            as_files(currents, folder, "currents"), match, fit, hold_out, cross_validate, correct,
+            None if sea_level is None else Path(sea_level), ",".join(map(str, flags)),
+            GAP if gap is None else np.timedelta64(round(gap * 1e9), "ns"), declination, without,
+        )  # fmt: skip
         output = folder / "motion.nc"
         recovery.estimate(output, workers=workers)
         with open_result(output) as kept:

@@ -34,32 +34,22 @@ WORST = 0.3  # share of the knockdown above which the error of the line is repor
 
 @dataclass(frozen=True)
 class Fault:
-    """A fault of a sensor, a current meter or the line.
+    """A fault of a sensor, a current meter or the line."""
 
-    Attributes
-    ----------
-    label : label of the sensor; `ALL` for all sensors together
-    kind : `moved`, `clock`, `gain`, `offset`, `drift`, `slip`, or one of `OF_LINE`
-    value, low, high : size of the fault, and its 95 % interval: the lag of a `clock` [h]; a `gain`;
-        the excess depth of an `offset` or `moved`, or at the end of a `drift` [m]; the distance
-        down the line of a `slip` [m]; for `OF_LINE`, the factor on the value in the file or on the
-        reading of the meter
-    odds : odds in favour of this fault against all alternatives, including no fault
-    since, until : start of a step, slip or drift, and end of a drift; otherwise NaT
-    rival : alternative explanations that are nearly as likely
-    corrected : whether the fault has been corrected
-    """
-
-    label: str
-    kind: str
+    label: str  # label of the sensor; `ALL` for all sensors together
+    kind: str  # `moved`, `clock`, `gain`, `offset`, `drift`, `slip`, or one of `OF_LINE`
+    # size of the fault, and its 95 % interval: the lag of a `clock` [h]; a `gain`; the excess depth
+    # of an `offset` or `moved`, or at the end of a `drift` [m]; the distance down the line of a
+    # `slip` [m]; for `OF_LINE`, the factor on the value in the file or on the reading of the meter
     value: float = 0.0
     low: float = 0.0
     high: float = 0.0
-    odds: float = 0.0
+    odds: float = 0.0  # odds in favour of this fault against all alternatives, including no fault
+    # start of a step, slip or drift, and end of a drift; otherwise NaT
     since: np.datetime64 = NO_TIME
     until: np.datetime64 = NO_TIME
-    rival: str = ""
-    corrected: bool = False
+    rival: str = ""  # alternative explanations that are nearly as likely
+    corrected: bool = False  # whether the fault has been corrected
 
     @property
     def size(self) -> float:
@@ -205,22 +195,13 @@ BAND = 1.96  # half-width of the 95 % interval of a normal distribution, in stan
 
 @dataclass(frozen=True)
 class Agreement:
-    """Agreement of computed and measured depths.
+    """Agreement of computed and measured depths."""
 
-    Attributes
-    ----------
-    count : number of times with both depths
-    bias : mean of computed minus measured depth [m]
-    rms : root mean square of the `difference` [m]
-    r : correlation of computed and measured depths
-    slope : regression slope of computed on measured depths
-    """
-
-    count: int
-    bias: float
-    rms: float
-    r: float
-    slope: float
+    count: int  # number of times with both depths
+    bias: float  # mean of computed minus measured depth [m]
+    rms: float  # root mean square of the `difference` [m]
+    r: float  # correlation of computed and measured depths
+    slope: float  # regression slope of computed on measured depths
 
 
 def calm_times(down: Floats, among: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _NOT_MEASURED = re.compile(
-    r"\binferred\b|\binterpolated (from|between|using)\b|\bneighbou?r(s|ing)?\b|\bby calm\b"
+    r"\b(inferred|interpolated (from|between|using)|neighbou?r(s|ing)?|by calm)\b"
 )
 
 
@@ -61,9 +61,8 @@ def read_sensors(
                 )
             mine = [replace(mine[0], label=label)]
         found += mine
-    labels = [one.label for one in found if one.label]
-    twice = sorted({label for label in labels if labels.count(label) > 1})
-    if twice:
+    labels = sorted(one.label for one in found if one.label)
+    if twice := [one for one, next_one in pairwise(labels) if one == next_one]:
         raise UsageError(f"--pressures: two sensors are called `{twice[0]}`")
     return [_doubted(one) for one in found]
 
@@ -79,8 +78,7 @@ def depth_of(dbar: Floats, latitude: float) -> Floats:
     import gsw
 
     known = np.where(np.isfinite(dbar), dbar, np.nan)
-    depths: Floats = -np.asarray(gsw.z_from_p(known, latitude), np.float64)
-    return depths
+    return -np.asarray(gsw.z_from_p(known, latitude), np.float64)
 
 
 def _from_arrays(
@@ -118,11 +116,7 @@ def _find(dataset: xr.Dataset) -> tuple[str, bool]:
         return found[0], True
     for name in map(str, dataset.cf.standard_names.get("depth", [])):
         clock = find_times(dataset, name)
-        if (
-            clock is not None
-            and dataset[clock].dims
-            and set(dataset[clock].dims) <= set(dataset[name].dims)
-        ):
+        if clock is not None and set() < {*dataset[clock].dims} <= {*dataset[name].dims}:
             return name, False
     raise UnreadableError(
         "has no pressures: CALM looks for a variable with the standard name sea_water_pressure, "
@@ -133,25 +127,16 @@ def _find(dataset: xr.Dataset) -> tuple[str, bool]:
 def _from_csv(path: Path, latitude: float) -> list[InstrumentSeries]:
     """Read a table ``time,LABEL[dbar],…``, or with units of length instead of dbar."""
     table = read_time_columns(path, ("pressure", "length"), "LABEL[dbar]")
-    scales = {"pressure": (1.0 / PASCALS_PER_DBAR, "dbar"), "length": (1.0, "m")}
-    summaries = {}
+    summaries, depths = {}, []
     for label, dimension, values in zip(table.names, table.dimensions, table.values.T, strict=True):
-        factor, unit = scales[dimension]
-        summaries[label] = VariableSummary.of(label, unit, values * factor)
+        pressure = dimension == "pressure"
+        read = values * (1.0 / PASCALS_PER_DBAR) if pressure else values
+        summaries[label] = VariableSummary.of(label, "dbar" if pressure else "m", read)
+        depths.append(depth_of(values / PASCALS_PER_DBAR, latitude) if pressure else values)
     card = ReadCard(path.name, {}, summaries, len(table.names), table.time)
     return [
-        InstrumentSeries(
-            label,
-            "",
-            float("nan"),
-            path.name,
-            table.time,
-            depth_of(values / PASCALS_PER_DBAR, latitude) if dimension == "pressure" else values,
-            card=card,
-        )
-        for label, dimension, values in zip(
-            table.names, table.dimensions, table.values.T, strict=True
-        )
+        InstrumentSeries(label, "", float("nan"), path.name, table.time, depth, card=card)
+        for label, depth in zip(table.names, depths, strict=True)
     ]
 
 
@@ -163,7 +148,7 @@ def parse_flags(text: str) -> frozenset[int]:
         raise UsageError(f"--flags: `{text[:40]}` is not a list of flags; write 1,2") from None
     if instrument_series.INTERPOLATED in flags:
         raise UsageError("--flags: 8 marks interpolated values, which are not measurements")
-    if not flags <= set(range(MISSING)):
+    if not flags <= {*range(MISSING)}:
         raise UsageError(f"--flags: `{text[:40]}`: flags must be from 0 to 8")
     return flags
 
@@ -172,9 +157,7 @@ FURTHEST = 20.0
 """Maximum distance of a sea-surface height from the median [m]: more than twice any real tide."""
 
 _STANDARD = (
-    "sea_surface_height_above_mean_sea_level",
-    "sea_surface_height_above_geoid",
-    "sea_surface_height_above_geopotential_datum",
+    *(f"sea_surface_height_above_{of}" for of in ("mean_sea_level", "geoid", "geopotential_datum")),
     "tidal_sea_surface_height_above_mean_sea_level",
     "water_surface_height_above_reference_datum",
 )
@@ -187,23 +170,18 @@ def read_sea_level(path: Path) -> tuple[NDArray[np.datetime64], Floats]:
         if len(table.names) != 1:
             message = "has several columns; only one is allowed: `time,level[m]`"
             raise InputError([Problem(str(path), 1, 1, message)])
-        _refuse_far(path, table.time, table.values[:, 0])
-        return table.time, table.values[:, 0]
-    with cf_files.opened(path) as dataset:
-        names = instrument_series.named(dataset, _STANDARD, ())
-        if not names:
-            raise UnreadableError("has no sea-surface height")
-        found = instrument_series.readings(dataset, names, frozenset(range(MISSING)))
-        if found.along is not None:
-            raise UnreadableError(
-                f"`{names[0]}` has values at several places (dimension `{found.along}`)"
-            )
-        level = found.values[0][:, 0] * factor_of(dataset[names[0]], "length")
-        _refuse_far(path, found.time, level)
-        return found.time, level
-
-
-def _refuse_far(path: Path, time: NDArray[np.datetime64], level: Floats) -> None:
+        time, level = table.time, table.values[:, 0]
+    else:
+        with cf_files.opened(path) as dataset:
+            names = instrument_series.named(dataset, _STANDARD, ())
+            if not names:
+                raise UnreadableError("has no sea-surface height")
+            found = instrument_series.readings(dataset, names, frozenset(range(MISSING)))
+            if found.along is not None:
+                raise UnreadableError(
+                    f"`{names[0]}` has values at several places (dimension `{found.along}`)"
+                )
+            time, level = found.time, found.values[0][:, 0] * factor_of(dataset[names[0]], "length")
     known = level[np.isfinite(level)]
     far = np.abs(level - (np.median(known) if known.size else 0.0)) > FURTHEST
     if far.any():
@@ -213,20 +191,14 @@ def _refuse_far(path: Path, time: NDArray[np.datetime64], level: Floats) -> None
             f"than {FURTHEST:g} m from its median; leave missing values blank"
         )
         raise InputError([Problem(str(path), 0, 0, message)])
+    return time, level
 
 
 CONSTANT = 1e-6  # range of depths up to which a sensor counts as constant [m]
-MISPLACED = 20.0
-"""Tolerance for the shallowest depth of a sensor against its place in still water [m].
-
-A factor of two is also accepted.
-"""
-UNITS = {"psi for dbar?": 1.45038, "dbar for psi?": 0.68948}
-"""Ratio of pressures with a confused unit to the true pressures."""
-ALIKE, APART = 0.03, 3.0
-"""Relative tolerance of that ratio, doubled for several sensors, and least distance between
-exchanged sensors [m].
-"""
+MISPLACED = 20.0  # tolerance for the shallowest depth against still water [m]; or a factor of two
+UNITS = {"psi for dbar?": 1.45038, "dbar for psi?": 0.68948}  # ratios of such readings to true ones
+ALIKE = 0.03  # relative tolerance of that ratio, doubled for several sensors
+APART = 3.0  # least distance between exchanged sensors [m]
 BELOW = 1.1  # readings are too deep if they exceed the seabed by this factor and by `MISPLACED`
 
 
@@ -288,8 +260,7 @@ def plausible(
     return sensor, notes
 
 
-STUCK, FEWEST_STUCK = 0.1, 24
-"""Share of a series and number of readings above which equal values mark a stuck sensor."""
+STUCK, FEWEST_STUCK = 0.1, 24  # share and number of equal readings that mark a stuck sensor
 
 
 def _stuck(value: Floats) -> NDArray[np.bool_]:
@@ -306,10 +277,8 @@ def _stuck(value: Floats) -> NDArray[np.bool_]:
     return same & lively
 
 
-AIR = instrument_text.AIR / 1.0082
-"""Excess depth from the pressure of the air [m], at 1.0082 dbar/m of sea water."""
-NEAR_AIR, ON_DECK = 2.5, 0.6
-"""Tolerances for that excess: in calm water, and for a sensor on deck [m]."""
+AIR = instrument_text.AIR / 1.0082  # excess depth [m], at 1.0082 dbar/m of sea water
+NEAR_AIR, ON_DECK = 2.5, 0.6  # tolerances for that excess: in calm water, and on deck [m]
 
 
 def air_notes(depth: Floats, place: Floats) -> list[str]:
@@ -380,14 +349,12 @@ def unusable(labels: Sequence[str], depth: Floats, place: Floats) -> dict[str, s
     units = _other_unit(least, place)
     for j, label in enumerate(labels):
         known = depth[:, j][np.isfinite(depth[:, j])]
+        far = abs(least[j] - place[j]) > MISPLACED and not 0.5 < least[j] / place[j] < 2.0
         if not known.size:
             reasons[label] = "has no good pressure at any time step of the currents"
-            continue
-        if known.size > 2 and np.ptp(known) <= CONSTANT:
+        elif known.size > 2 and np.ptp(known) <= CONSTANT:
             reasons[label] = f"is constant at {known[0]:.1f} m and was excluded"
-            continue
-        far = abs(least[j] - place[j]) > MISPLACED and not 0.5 < least[j] / place[j] < 2.0
-        if (far or units) and not any(f"`{label}`" in one for one in exchanged):
+        elif (far or units) and not any(f"`{label}`" in one for one in exchanged):
             doubted = "sign" if least[j] < -MISPLACED else f"unit ({units or 'bar, kPa?'})"
             far_off[label] = (
                 f"is at {least[j]:.1f} m at its shallowest, but at {place[j]:.1f} m in the mooring "

@@ -21,24 +21,15 @@ BLOCK = 256  # number of times per stored block
 
 @dataclass(frozen=True)
 class StateSpace:
-    """A linear state-space model of n times, q states and m readings.
+    """A linear state-space model of n times, q states and m readings."""
 
-    Attributes
-    ----------
-    fade : (n, q) factor by which each state decays since the previous time; the first is unused
-    steady : (q, q) stationary covariance of the states that decay
-    stepped : (n, q) variance added to each persistent state since the previous time
-    first : (q, q) covariance of the states at the first time; their prior mean is always 0
-    seen : (n, m, q) derivatives of the readings with respect to the states
-    read, noise : (n, m) readings, NaN if missing, and variances of their errors
-    """
-
+    # (n, q) factor by which each state decays since the previous time; the first is unused
     fade: Floats
-    steady: Floats
-    stepped: Floats
-    first: Floats
-    seen: Floats
-    read: Floats
+    steady: Floats  # (q, q) stationary covariance of the states that decay
+    stepped: Floats  # (n, q) variance added to each persistent state since the previous time
+    first: Floats  # (q, q) covariance of the states at the first time; their prior mean is always 0
+    seen: Floats  # (n, m, q) derivatives of the readings with respect to the states
+    read: Floats  # (n, m) readings, NaN if missing, and variances of their errors
     noise: Floats
 
     def added(self, time: int) -> Floats:
@@ -63,19 +54,13 @@ class _Filtered:
 
 @dataclass(frozen=True)
 class Smoothed:
-    """Smoothed states at b successive times, given all readings of the record.
+    """Smoothed states at b successive times, given all readings of the record."""
 
-    Attributes
-    ----------
-    times : slice of the times
-    mean, covariance : (b, q) mean and (b, q, q) covariance of the states
-    pull, hold : vector r (b, q) and matrix N (b, q, q) of Durbin and Koopman: the state noise
-        before each time, of prior covariance Q, has the mean Q r and the covariance Q - Q N Q
-    """
-
-    times: slice
-    mean: Floats
+    times: slice  # slice of the times
+    mean: Floats  # (b, q) mean and (b, q, q) covariance of the states
     covariance: Floats
+    # vector r (b, q) and matrix N (b, q, q) of Durbin and Koopman: the state noise before each
+    # time, of prior covariance Q, has the mean Q r and the covariance Q - Q N Q
     pull: Floats
     hold: Floats
 

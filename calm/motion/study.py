@@ -46,24 +46,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class HeldOut:
-    """A withheld sensor, and the errors of the depths estimated without this sensor.
-
-    Attributes
-    ----------
-    count : number of times with good pressures of this sensor and of all sensors in use
-    bias : mean of estimated minus measured depth [m]
-    rms : root mean square of the `difference` of estimated and measured depth [m]
-    linear_rms, pchip_rms : as `rms`, for depths interpolated by `linear` and `pchip` [m]
-    coverage : share of the differences within the 95 % interval of the estimate
-    """
+    """A withheld sensor, and the errors of the depths estimated without this sensor."""
 
     label: str
-    count: int
-    bias: float
-    rms: float
-    linear_rms: float
+    count: int  # number of times with good pressures of this sensor and of all sensors in use
+    bias: float  # mean of estimated minus measured depth [m]
+    rms: float  # root mean square of the `difference` of estimated and measured depth [m]
+    linear_rms: float  # as `rms`, for depths interpolated by `linear` and `pchip` [m]
     pchip_rms: float
-    coverage: float
+    coverage: float  # share of the differences within the 95 % interval of the estimate
 
 
 @dataclass(frozen=True, repr=False)
@@ -311,23 +302,15 @@ def cross_validated(
 
 @dataclass(frozen=True)
 class SensorSeries:
-    """Depths of one sensor or instrument over time.
-
-    Attributes
-    ----------
-    hidden : True if the estimate uses no pressure of this sensor
-    time : (n,) times
-    measured : (n,) measured depths [m]; NaN if not measured
-    estimated, spread : (n,) estimated depths and their standard deviations [m]
-    plain : (n,) depths computed from the measured currents alone [m]; otherwise None
-    """
+    """Depths of one sensor or instrument over time."""
 
     label: str
-    hidden: bool
-    time: NDArray[np.datetime64]
-    measured: Floats
-    estimated: Floats
+    hidden: bool  # True if the estimate uses no pressure of this sensor
+    time: NDArray[np.datetime64]  # (n,) times
+    measured: Floats  # (n,) measured depths [m]; NaN if not measured
+    estimated: Floats  # (n,) estimated depths and their standard deviations [m]
     spread: Floats
+    # (n,) depths computed from the measured currents alone [m]; otherwise None
     plain: Floats | None
 
 

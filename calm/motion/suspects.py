@@ -36,20 +36,13 @@ CAUSES: Mapping[str, tuple[float, float]] = {
 
 @dataclass(frozen=True)
 class Suspect:
-    """A possible fault, and its effect on the readings of s sensors at n times.
-
-    Attributes
-    ----------
-    column : (n, s) change in the measured depths per unit of the size of the fault
-    wide : prior standard deviation of the size; 0 if the size is fixed
-    log : logarithm of the prior probability of the fault
-    shift : (n, s) change in the measured depths by a fault of fixed size [m]; otherwise 0
-    """
+    """A possible fault, and its effect on the readings of s sensors at n times."""
 
     fault: Fault
-    column: Floats
-    wide: float
-    log: float
+    column: Floats  # (n, s) change in the measured depths per unit of the size of the fault
+    wide: float  # prior standard deviation of the size; 0 if the size is fixed
+    log: float  # logarithm of the prior probability of the fault
+    # (n, s) change in the measured depths by a fault of fixed size [m]; otherwise 0
     shift: Floats | float = 0.0
 
 
