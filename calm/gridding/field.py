@@ -99,14 +99,11 @@ def field_of(samples: Samples, noise: float, *, in_time: bool = True) -> Gridded
     known = np.isfinite(samples.value)
     if int(known.any(axis=0).sum()) < 2:
         raise UsageError("fewer than two instruments of the line have good values")
-    rough = GriddedQuantity(
-        samples, profile_of(samples, noise), Scales(1.0, 1.0, 0.5), noise, in_time
-    )
+    profile = profile_of(samples, noise)
+    rough = GriddedQuantity(samples, profile, Scales(1.0, 1.0, 0.5), noise, in_time)
     most = np.argsort(-known.sum(axis=1), kind="stable")[: max(len(known) // 2, TIMES_FOR_SCALES)]
-    times = np.sort(most)[
-        np.linspace(0, len(most) - 1, min(TIMES_FOR_SCALES, len(most))).astype(int)
-    ]
-    found = replace(rough, scales=_likeliest(rough, np.unique(times)))
+    few = np.linspace(0, len(most) - 1, min(TIMES_FOR_SCALES, len(most))).astype(int)
+    found = replace(rough, scales=_likeliest(rough, np.unique(np.sort(most)[few])))
     every = max(len(known) // TIMES_LEFT_OUT, 1)
     return replace(found, beyond=_beyond(found, np.arange(0, len(known), every)))
 
@@ -221,8 +218,7 @@ def _correlation(a: Floats, b: Floats, s: Floats, t: Floats, scales: Scales) -> 
     """
     far = 3.0**0.5 / scales.depth * np.abs(a[:, :, None] - b[:, None, :])
     apart = np.abs(s[:, :, None] - t[:, None, :]) / scales.time
-    whole: Floats = (1.0 - scales.share) * (1.0 + far) * np.exp(-far - apart)
-    return whole
+    return np.asarray((1.0 - scales.share) * (1.0 + far) * np.exp(-far - apart))
 
 
 def posterior(field: GriddedQuantity, times: NDArray[np.int64], levels: Floats) -> LevelPosterior:
@@ -318,12 +314,10 @@ def left_out(field: GriddedQuantity, times: NDArray[np.int64]) -> tuple[Floats, 
     for j in range(sensors):
         own = np.arange(count) * sensors + j
         part = np.linalg.inv(inverse[:, own[:, None], own[None, :]])
-        known = block.known[:, own[here]] & (
-            block.known.sum(axis=1) > block.known[:, own].sum(axis=1)
-        )
-        residual[:, j] = np.where(
-            known, np.einsum("ni,ni->n", part[:, here], weighted[:, own]), np.nan
-        )
+        others = block.known.sum(axis=1) > block.known[:, own].sum(axis=1)
+        known = block.known[:, own[here]] & others
+        off = np.einsum("ni,ni->n", part[:, here], weighted[:, own])
+        residual[:, j] = np.where(known, off, np.nan)
         spread[:, j] = np.where(known, np.sqrt(np.maximum(part[:, here, here], 0.0)), np.nan)
     return residual, spread
 

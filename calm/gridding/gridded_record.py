@@ -65,10 +65,9 @@ class GriddedRecord:
     layout: ResultLayout
 
     def write(
-        self,
-        output: str | Path,
+        self, output: str | Path,
         progress: Callable[[Sequence[int]], Iterable[int]] = lambda each: each,
-    ) -> None:
+    ) -> None:  # fmt: skip
         """Compute the values and write them to a NetCDF file, as ``calm grid -o`` does.
 
         `progress` wraps the iteration over blocks of times.
@@ -223,10 +222,8 @@ def read_gridded(
         show(card)
     for text in dict.fromkeys(f"{one.source}: {one.note}" for one in every if one.note):
         note(text)
-    if variables is not None:
-        for name in wanted:
-            if not series[name]:
-                raise UsageError(f"--variables: no file holds {name}")
+    if variables is not None and (lacking := [name for name in wanted if not series[name]]):
+        raise UsageError(f"--variables: no file holds {lacking[0]}")
     fields = fields_of(places, series, step, note, in_time=method == METHODS[0])
     archived = variables is not None and variables.isupper()
     names = {one: QUANTITIES_MEASURED[one].archive if archived else one for one in fields}

@@ -29,6 +29,7 @@ from calm.units import QuantityError, parse_quantity
 from calm.version import __version__
 
 MOST_LEVELS = 5000
+_KEYWORDS = ("OCEAN TEMPERATURE", "OCEAN CIRCULATION", "SALINITY/DENSITY")
 
 
 def parse_levels(text: str) -> NDArray[np.float64]:
@@ -94,8 +95,8 @@ def grid_layout(
         quantity, called = QUANTITIES_MEASURED[name], names[name]
         about: netcdf.Attributes = {
             "standard_name": quantity.standard_name, "long_name": quantity.long_name,
-            "units": quantity.units, "coordinates": where.strip(), "coverage_content_type":
-            "physicalMeasurement", "comment": method_sentence(field),
+            "units": quantity.units, "coordinates": where.strip(),
+            "coverage_content_type": "physicalMeasurement", "comment": method_sentence(field),
         }  # fmt: skip
         spread: netcdf.Attributes = {
             "standard_name": f"{quantity.standard_name} standard_error",
@@ -113,6 +114,7 @@ def grid_layout(
         flagged[called] = [f"{called}_sd"]
     means = "time: point" if averaged is None else f"time: mean (interval: {averaged})"
     before = [str(depths.attributes[key]) for key in ("history",) if key in depths.attributes]
+    made = f"{written()} calm {__version__} grid: {', '.join(inputs)}"
     labels = list(dict.fromkeys(label for one in fields.values() for label in one.samples.label))
     attributes: netcdf.Attributes = {
         **ARCHIVED,
@@ -126,27 +128,18 @@ def grid_layout(
             f"{len(labels)} instruments, mapped to the levels by a Gaussian process over depth and "
             "time, each value with its standard deviation."
         ),
-        "keywords": "EARTH SCIENCE > OCEANS > OCEAN TEMPERATURE, EARTH SCIENCE > OCEANS > "
-        "OCEAN CIRCULATION, EARTH SCIENCE > OCEANS > SALINITY/DENSITY",
+        "keywords": ", ".join(f"EARTH SCIENCE > OCEANS > {one}" for one in _KEYWORDS),
         "keywords_vocabulary": GCMD,
         "source": "subsurface mooring",
         "processing_level": "Data interpolated",
-        "comment": (
-            "Flag 8: between instruments; 3: beyond the instruments, or poorly constrained; 9: no "
-            "value"
-        ),
+        "comment": "Flag 8: between instruments; 3: beyond the instruments, or poorly constrained; "
+        "9: no value",
         "QC_indicator": "mixed",
         "instrument": ", ".join(labels),
         "calm": __version__,
         "date_created": written(),
         "date_modified": written(),
-        "history": "\n".join(
-            [
-                *before,
-                f"{written()} calm {__version__} grid: {', '.join(inputs)}",
-                *(card.sentence() for card in cards),
-            ]
-        ),
+        "history": "\n".join([*before, made, *(card.sentence() for card in cards)]),
     }
     if depths.place:
         attributes["featureType"] = "timeSeriesProfile"
@@ -158,7 +151,7 @@ def grid_layout(
 def method_sentence(field: GriddedQuantity) -> str:
     """Return a sentence that describes the gridding of a quantity, with the correlation scales."""
     scales = field.scales
-    time = "" if not field.in_time else f" and {scales.time / 3600.0:.3g} h in time"
+    time = f" and {scales.time / 3600.0:.3g} h in time" * field.in_time
     return (
         f"Gaussian process about the mean profile of the record, correlated over "
         f"{scales.depth:.3g} m along depth{time}; {100.0 * scales.share:.2g} % of the variance is "

@@ -80,8 +80,7 @@ def _understood(dataset: Dataset, path: Path) -> MooringDepths:
     )
 
 
-ANOTHER_PLACE = 30.0
-"""Difference between pressure [dbar] and depth [m] that indicates another instrument."""
+ANOTHER_PLACE = 30.0  # difference of pressure [dbar] and depth [m] of another instrument
 
 MOST = 5_000_000  # maximum number of times written: one a second for two months
 
@@ -170,6 +169,5 @@ def gather(
             sums = np.bincount(bin_of[good], known[good], minlength=len(time))
             with np.errstate(invalid="ignore"):
                 table[:, column] = sums / count
-    return Samples(
-        time, tuple(depths.places.label[points[i]] for i in order), depth, deviation, value
-    )
+    labels = tuple(depths.places.label[points[i]] for i in order)
+    return Samples(time, labels, depth, deviation, value)

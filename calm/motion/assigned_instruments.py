@@ -19,10 +19,8 @@ from calm.motion.matching import CERTAIN, in_order, named_point, places_of
 from calm.records.current_terms import parse_time, time_text
 from calm.records.instrument_series import Identity
 
+# least reported difference of nominal and still-water depth: share of the depth, and metres
 ASTRAY = 0.02, 5.0
-"""Difference between nominal and still-water depth above which it is reported: as a share of the
-depth, and in metres.
-"""
 _ITEMS = ("deployed", "items")
 
 

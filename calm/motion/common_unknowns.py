@@ -17,8 +17,7 @@ from calm.motion.currents_law import SpeedLaw
 from calm.physics.line import Floats, Integers
 
 FURTHEST = 1.0  # limit on the logarithm of a factor
-REACH = 5.0
-"""Least distance from a sensor to the points between which its slope on the line is taken [m]."""
+REACH = 5.0  # least distance from a sensor to the points that give its slope on the line [m]
 
 
 @dataclass(frozen=True)
@@ -144,8 +143,7 @@ class LinearLaw:
     def weight(self) -> Floats:
         """Weight (n,) of each time under Student's t distribution; a large misfit lowers it."""
         misfit = np.einsum("ns,nst,nt->n", self.left, self.inverse, self.left)
-        weight: Floats = (ROBUST + self.known.sum(axis=1)) / (ROBUST + misfit)
-        return weight
+        return np.asarray((ROBUST + self.known.sum(axis=1)) / (ROBUST + misfit))
 
     def pulls(self, seen: Floats, left: Floats) -> Floats:
         """Return (n, q) gradients of the log-likelihood, for residuals (n, s) and derivatives (n,
@@ -160,8 +158,7 @@ class LinearLaw:
 
 
 MISHUNG = -1  # code of a sensor that hangs elsewhere throughout, in place of a time
-RAMPS: Mapping[int, float] = {-2: 1.0, -3: 0.3}
-"""Share of the record over which a drift lasts, by the code that `moved_by` takes."""
+RAMPS: Mapping[int, float] = {-2: 1.0, -3: 0.3}  # share of the record of a drift, by its code
 
 
 def moved_by(code: int, fall: Floats, share: Floats) -> Floats:
@@ -218,18 +215,14 @@ FACTORS: Mapping[str, float] = {
 The factors multiply the drag of cables and chains; the drag of rigid pieces and clamped
 instruments; the net buoyancy of all buoyant pieces; and the lengths of cables and chains.
 """
-DATUM = 0.01
-"""Prior deviation of the datum, an error common to all depths, as a share of the water depth."""
+DATUM = 0.01  # prior deviation of the error common to all depths, as a share of the water depth
 OFFSET = 1.0  # prior deviation of the offset of a sensor [m]
-ELSEWHERE, MISPLACED, SLIPPED = 20.0, 0.01, 0.01
-"""Prior deviation of the displacement of a slipped or misplaced sensor [m], the probability that it
-is misplaced from the start, and the probability that its clamp slips during the record.
-"""
+ELSEWHERE = 20.0  # prior deviation of the displacement of a slipped or misplaced sensor [m]
+MISPLACED, SLIPPED = 0.01, 0.01  # probabilities: misplaced from the start, slips during the record
 MOVED = 0.01  # probability that the whole mooring is moved to another depth during the record
+# probability that a current is false in direction or size, by its quality flag
 FALSE: Mapping[int, float] = {0: 0.01, 1: 0.01, 2: 0.03, 3: 0.10, 4: 0.30, 8: 0.10}
-"""Probability that a current is false in direction or size, by its quality flag."""
-DRIFT, DRIFTS = 5.0, 0.01
-"""Prior deviation of the drift over the record [m], and the probability of a drift."""
+DRIFT, DRIFTS = 5.0, 0.01  # prior deviation of a drift over the record [m], and its probability
 TIDE = 1.0  # deviation of tide and air pressure [m], unless the sea level is given: `RESIDUAL_TIDE`
 RESIDUAL_TIDE = 0.15
 NOISE = 0.2  # deviation of a depth from pressure at one time [m]

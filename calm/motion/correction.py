@@ -39,30 +39,23 @@ from calm.records.card import ReadCard
 from calm.records.record import Levels, Record
 
 _DEVIATION: Attributes = {"standard_name": "depth standard_error"}
+_DEPTH: Attributes = {"standard_name": "depth", "positive": "down"}
+# dimensions besides time, unit, meaning and attributes of variables added to a batch result
 OF_MOTION: Mapping[str, tuple[tuple[str, ...], tuple[str, str, Attributes]]] = {
     "clamp_depth_sd": (
-        ("clamp",),
-        ("m", "standard deviation of the depth of the clamped instrument", _DEVIATION),
+        ("clamp",), ("m", "standard deviation of the depth of the clamped instrument", _DEVIATION),
     ),
     "depth_sd": (
-        ("component",),
-        ("m", "standard deviation of the depth of the upper end", _DEVIATION),
+        ("component",), ("m", "standard deviation of the depth of the upper end", _DEVIATION),
     ),
     "current_factor": ((), ("1", "estimated factor on the current", {})),
     "current_doubt": (("level",), ("1", "probability that the current at the level is false", {})),
     "residual": (("sensor",), ("m", "measured depth of the sensor minus its estimated depth", {})),
-    "plain_depth": (
-        ("sensor",),
-        (
-            "m",
-            "depth of the sensor computed from the currents alone, without fitting",
-            {"standard_name": "depth", "positive": "down"},
-        ),
-    ),
-}
-"""Dimensions besides time, unit, meaning and attributes of variables added to a batch result."""
-OF_CURRENTS = frozenset({"current_factor", "current_doubt", "plain_depth"})
-"""Variables of `OF_MOTION` that need a measured current."""
+    "plain_depth": (("sensor",), (
+        "m", "depth of the sensor computed from the currents alone, without fitting", _DEPTH,
+    )),
+}  # fmt: skip
+OF_CURRENTS = frozenset({"current_factor", "current_doubt", "plain_depth"})  # need a current
 MEASURED, ESTIMATED, MISSING = 1, 8, 9  # flags of depths, from the flag table of OceanSITES
 FLAGGED = {"clamp_depth": ["clamp_depth_sd"], "depth_top": ["depth_sd"]}
 _OF_DOCUMENT = {
@@ -150,10 +143,10 @@ def motion_layout(task: Task, record: MeasuredRecord) -> ResultLayout:
 def about(mooring: Design) -> Attributes:
     """Return archive attributes from the keys `document` and `deployed` of a mooring file."""
     file = mooring.file
-    attributes: Attributes = {}
-    if file.document is not None:
-        known = file.document.to_dict()
-        attributes = {name: str(known[key]) for key, name in _OF_DOCUMENT.items() if key in known}
+    known = {} if file.document is None else file.document.to_dict()
+    attributes: Attributes = {
+        name: str(known[key]) for key, name in _OF_DOCUMENT.items() if key in known
+    }
     for part in ("name", "email", "url"):  # the creator also publishes the file
         if f"creator_{part}" in attributes:
             attributes[f"publisher_{part}"] = attributes[f"creator_{part}"]
@@ -169,8 +162,7 @@ def depth_flags(one: MooringMeasurements, profiles: Profiles) -> dict[str, NDArr
     """Return a flag for each depth; measured if the point has a sensor with a pressure at that
     time.
     """
-    clamps = profiles.clamp_depth.shape[1]
-    depth = np.hstack([profiles.clamp_depth, profiles.depth_top])
+    clamps, depth = profiles.clamp_depth.shape[1], points(profiles)
     flag = np.where(np.isfinite(depth), ESTIMATED, MISSING).astype(np.int8)
     for j, point in enumerate(one.point.tolist()):
         own = np.isfinite(one.depth[:, j]) & (flag[:, point] == ESTIMATED)
@@ -179,16 +171,15 @@ def depth_flags(one: MooringMeasurements, profiles: Profiles) -> dict[str, NDArr
 
 
 def estimate_in_memory(
-    task: Task, points: Sequence[int], workers: int | None = None
+    task: Task, wanted: Sequence[int], workers: int | None = None
 ) -> tuple[Floats, Floats]:
     """Estimate (n, m) depths of m points, and standard deviations [m], without writing a file."""
     starts = range(0, len(task.measured.time), BLOCK)
 
     def one(start: int) -> tuple[Floats, Floats]:
         profiles, more = task.columns(start, start + BLOCK)
-        depth = np.hstack([profiles.clamp_depth, profiles.depth_top])
         spread = np.hstack([more["clamp_depth_sd"], more["depth_sd"]])
-        return depth[:, points], spread[:, points]
+        return points(profiles)[:, wanted], spread[:, wanted]
 
     with ThreadPoolExecutor(workers or processors()) as pool:
         found = list(pool.map(one, starts))
@@ -230,8 +221,7 @@ class Task:
         else:
             forward, offset = smoother.best, smoother.offset[times]
             depth, deviation = smoother.depth[times], smoother.deviation[times]
-            read = smoother.read(times)
-            surface = smoother.surface[times]
+            read, surface = smoother.read(times), smoother.surface[times]
         # inferred currents may exceed the limit of measured ones, which is for errors in files
         limit = self.mooring.file.environment.maximum_speed
         share = np.minimum(1.0, (1.0 - 1e-9) * limit / np.maximum(np.hypot(read.u, read.v), 1e-9))
@@ -249,12 +239,11 @@ class Task:
         if smoother is not None:
             profiles = without_current(profiles, smoother.lost[times], one.false)
         known = np.where(profiles.status == 0, 1.0, np.nan)
-        deviation = deviation * known[:, None]
+        clamp_deviation, own_deviation = np.split(deviation * known[:, None], [clamps], axis=1)
         columns = {
-            "clamp_depth_sd": deviation[:, :clamps],
-            "depth_sd": deviation[:, clamps:],
+            "clamp_depth_sd": clamp_deviation, "depth_sd": own_deviation,
             "residual": one.depth - offset - depth[:, one.point],
-        }
+        }  # fmt: skip
         if smoother is not None:
             columns |= {
                 "current_factor": smoother.current_factor[times] * known,

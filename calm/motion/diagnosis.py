@@ -31,15 +31,12 @@ from calm.motion.suspects import Suspect, line_suspects
 from calm.motion.unknown_currents import SEABED, unknown_state
 from calm.physics.line import Floats
 
+# odds above which a fault is reported without measured currents: the line may be the cause instead
 LIKELY_ALONE = 1000.0
-"""Odds above which a fault is reported if currents were not measured.
-
-They are higher because an error of the line may be the cause instead.
-"""
 MOST = 8  # maximum number of faults
 CLOCKS, FURTHEST = 0.01, 13.0  # probability of a wrong clock, and the maximum lag searched [h]
-GAIN, GAINS, ALL_GAINS = 0.02, 0.01, 0.001
-"""Prior deviation of a gain, and the probability of a wrong gain in one sensor and in all."""
+GAIN = 0.02  # prior deviation of a gain
+GAINS, ALL_GAINS = 0.01, 0.001  # probability of a wrong gain in one sensor, and in all
 LEAST = {
     "moved": 3.0, "clock": 0.08, "gain": 0.003, "offset": 2.5, "drift": 1.0, "slip": 1.5,
     "currents": 0.1, "buoyancy": 0.06, "length": 0.004, "drag": 0.3,

@@ -86,8 +86,7 @@ class Forward:
     def still(self) -> Floats:
         """Depths (p,) of the points in still water [m]."""
         nothing = np.zeros((1, 1))
-        depths: Floats = points(self.solve(nothing, nothing, nothing))[0]
-        return depths
+        return np.asarray(self.depths(nothing, nothing, nothing)[0])
 
     def solve(self, depth: Floats, u: Floats, v: Floats) -> Profiles:
         """Solve the mooring in n current profiles, on one thread."""
@@ -136,10 +135,8 @@ def instruments_of(mooring: Design) -> list[int]:
     return [*fixed, *(len(clamps) + i for i in own)]
 
 
-SPAN, LOCAL = 0.25, 0.3
-"""Correlation length of the error in knockdown as a share of the line, and the local error of a
-point as a share of its knockdown; bends at floats and clamps cause local errors.
-"""
+SPAN = 0.25  # correlation length of the error in knockdown, as a share of the line
+LOCAL = 0.3  # local error of a point, from bends at floats and clamps, as a share of its knockdown
 
 
 def own_errors(depth: Floats, still: Floats, learnt: bool) -> Floats:
@@ -154,8 +151,8 @@ def own_errors(depth: Floats, still: Floats, learnt: bool) -> Floats:
     if not learnt:
         own = np.maximum(np.nan_to_num(depth - still), 0.0)
         span = max(SPAN * float(np.ptp(still)), 1.0)
-        errors = own[:, :, None] * np.exp(-np.abs(still[:, None] - still) / span) * own[:, None, :]
-        return errors
+        alike = np.exp(-np.abs(still[:, None] - still) / span)
+        return np.asarray(own[:, :, None] * alike * own[:, None, :])
     order = np.argsort(-still, kind="stable")
     back, place = np.argsort(order, kind="stable"), still[order]
     down = np.maximum(np.nan_to_num(depth - still), 0.0)[:, order]
@@ -165,5 +162,4 @@ def own_errors(depth: Floats, still: Floats, learnt: bool) -> Floats:
     alike = np.exp(-far)
     errors = (part[:, :, None] * alike * part[:, None, :]).cumsum(axis=1).cumsum(axis=2)
     errors += LOCAL**2 * down[:, :, None] * alike * down[:, None, :]
-    ordered: Floats = errors[:, back[:, None], back]
-    return ordered
+    return np.asarray(errors[:, back[:, None], back])

@@ -29,73 +29,49 @@ from calm.motion.measurements import FREE, MooringMeasurements, chosen_times, ne
 from calm.motion.smoother import BLOCK, StateSpace, smoothed
 from calm.physics.line import Floats
 
-TURNS, ENOUGH, PLACED = 20, 0.05, (1, 3, 5, 8, 11)
-"""Maximum number of Gauss-Newton steps, the change in depth that ends them [m], and the steps after
-which the factors are updated.
-"""
+TURNS, ENOUGH = 20, 0.05  # most Gauss-Newton steps, and the change in depth that ends them [m]
+PLACED = (1, 3, 5, 8, 11)  # steps after which the factors are updated
+# step of the logarithm of a factor for its slopes, and change above which slopes are renewed
 FACTOR_STEP = 0.05
-"""Step of the logarithm of a factor for its slopes, and change above which slopes are renewed."""
 STALE = 0.03  # change in a current above which its slopes are renewed [m/s]
 LONGEST = 0.5  # maximum change in a current in one step [m/s]
 
-MOST_LEVELS, KNOTS, APART = 8, 12, 2.0
-"""Number of levels up to which each is a knot, number of knots for more levels, and the distance
-below which levels share a knot [m].
-"""
-ABOVE, BELOW = 5.0, 20.0
-"""Height of an additional knot above the top of a line that extends above the levels, and least
-distance from the lowest level to the seabed for a knot half-way [m].
-"""
+MOST_LEVELS, KNOTS = 8, 12  # number of levels up to which each is a knot, and knots for more levels
+APART = 2.0  # distance below which levels share a knot [m]
+ABOVE = 5.0  # height of a knot above the top of a line that extends above the levels [m]
+BELOW = 20.0  # least distance from the lowest level to the seabed for a knot half-way [m]
 
+# error of a current meter: constant part [m/s], and share of the speed; times a factor by flag
 METER = 0.02, 0.10
-"""Error of a current meter: constant part [m/s], and share of the speed.
-
-Both are multiplied by a factor that depends on the quality flag.
-"""
+# default factors on the meter error, by quality flag
 FLAGGED: Mapping[int, float] = {0: 1.0, 1: 1.0, 2: 1.5, 3: 2.0, 4: 4.0, 8: 3.0}
-"""Default factors on the meter error, by quality flag."""
-FLAG_RANGE, FEWEST = (0.6, 15.0), 20
-"""Limits of the estimated factor on the meter error, and the least number of readings.
-
-The lower limit is above zero because the current at even a perfect meter differs from the current
-on the line around it.
-"""
+# limits of the estimated factor on the meter error: the current at even a perfect meter differs
+# from the current on the line around it
+FLAG_RANGE = (0.6, 15.0)
+FEWEST = 20  # least number of readings for this estimate
 STUDENT = 4.0  # degrees of freedom of Student's t distribution of the readings
 ALIKE_HOURS = 1.0  # time over which the error of a meter persists [h]
 LEAST_SPREAD = 0.02  # least deviation of a current about its mean [m/s]
-CURRENT_HOURS, CURRENT_REACH = 16.0, 600.0
-"""Initial correlation time [h] and correlation depth [m] of the current."""
-HOURS = (4.0, 16.0)
-"""Limits of the estimated correlation time of the current [h]; a longer time would damp tides."""
+CURRENT_HOURS = 16.0  # initial correlation time of the current [h]
+CURRENT_REACH = 600.0  # correlation depth of the current [m]
+HOURS = (4.0, 16.0)  # limits of the estimated correlation time [h]; a longer one would damp tides
+# factor on the prior deviation of the currents for the estimate of the drag: smoothing would damp
+# the strongest currents, and so raise the drag
 WIDER = 2.0
-"""Factor on the prior deviation of the currents for the estimate of the drag.
-
-With the unchanged prior, smoothing would damp the strongest currents, and so raise the drag.
-"""
 METERS_ALIKE = 0.02  # error common to all meters of a record, as a share of the speed
 
-STRETCHES, SPAN, LOCAL = 10, 0.25, 0.3
-"""Number of stretches with separate errors in knockdown, their correlation length as a share of the
-line, and the local error of a point as a share of its own knockdown.
-
-Without the local error, dune2 is 8 % better, synthetic moorings with ten-minute meters 3 % worse,
-and RAPID's depths without currents up to 26 % worse.
-"""
-SHARE, SHARES, LINE_HOURS = 0.07, (0.01, 0.4), 6.0
-"""Prior and limits of the error share of a stretch, and its correlation time [h]."""
-TIDE_HOURS = 2.4
-"""Correlation time of the tide [h]: the autocorrelation of a semidiurnal tide falls to 1/e."""
+# Without `LOCAL`, dune2 is 8 % better, synthetic moorings with ten-minute meters 3 % worse, and
+# RAPID's depths without currents up to 26 % worse
+STRETCHES = 10  # number of stretches with separate errors in knockdown
+SHARE, SHARES = 0.07, (0.01, 0.4)  # prior and limits of the error share of a stretch
+LINE_HOURS = 6.0  # correlation time of the error of a stretch [h]
+TIDE_HOURS = 2.4  # correlation time of the tide [h]: that of a semidiurnal tide falls to 1/e
+# typical hourly step of datum and offsets [m]; steps and initial values have Student's t
+# distribution with one degree of freedom, which allows rare steps that are many times as large
 STEP = 0.02
-"""Typical hourly step of the datum and offsets [m].
-
-These steps and the initial values have Student's t distribution with one degree of freedom, which
-allows rare steps that are many times as large.
-"""
+# weight 1 / (1 + n) of the square of an unknown in its variance, for n degrees of freedom; a place
+# of 2 cm begins at a variance of 1 m², and shrinks unless it exceeds four deviations
 TAILS = {"datum": 1.0 / 2.0, "place": 1.0 / 5.0}
-"""Weight 1 / (1 + n) of the square of an unknown in its variance, for n degrees of freedom.
-
-A place of 2 cm begins at a variance of 1 m², and shrinks unless it exceeds four deviations.
-"""
 ZEROS = 2.0  # variance of Student's law with four degrees of freedom over that of a normal law
 SETTLED = 6  # number of steps before the line error is estimated, as it would absorb sensor steps
 LONGER = 30.0  # maximum factor by which a step of the line error is lengthened
@@ -201,12 +177,10 @@ class CurrentSmoother:
         self.still = Forward(mooring, {}).still
         self.seabed = float(mooring.water.depth)
         one = measured
-        self.places = place = np.array(
-            [
-                self.still[point] if point != FREE else np.nanmean(one.level_depth[:, k])
-                for k, point in enumerate(one.level_point.tolist())
-            ]
-        )
+        self.places = place = np.array([
+            self.still[point] if point != FREE else np.nanmean(one.level_depth[:, k])
+            for k, point in enumerate(one.level_point.tolist())
+        ])  # fmt: skip
         self.hours = (one.time - one.time[:1]) / np.timedelta64(1, "h")
         self.knots = knots_of(place, float(self.still.min()), self.seabed)
         count, sensors = len(self.knots.depth), len(one.label)
@@ -326,7 +300,7 @@ class CurrentSmoother:
         edges = np.linspace(self.still.max(), self.still.min(), STRETCHES + 1)
         own = np.clip(np.searchsorted(-edges, -self.still, "right") - 1, 0, STRETCHES - 1)
         middle = 0.5 * (edges[1:] + edges[:-1])
-        span = max(SPAN * float(np.ptp(self.still)), 1.0)
+        span = max(line_response.SPAN * float(np.ptp(self.still)), 1.0)
         return edges, own, np.exp(-np.abs(middle[:, None] - middle) / span)
 
     def by_line(self, there: Floats) -> Floats:
@@ -338,16 +312,12 @@ class CurrentSmoother:
         down = np.maximum(np.nan_to_num(there - self.still), 0.0)
         place = self.still[order]
         after = np.clip(np.searchsorted(place, edges), 1, len(place) - 1)
-        share = np.clip(
-            (edges - place[after - 1]) / np.maximum(place[after] - place[after - 1], 1e-9), 0, 1
-        )
-        sorted_down = down[:, order]
-        at_edge = (1.0 - share) * sorted_down[:, after - 1] + share * sorted_down[:, after]
-        part = np.diff(at_edge, axis=1)
-        number = np.arange(STRETCHES)
-        result = part[:, None, :] * (number < own[:, None])
-        mine = down - at_edge[:, own] + LOCAL * down
-        result[:, np.arange(len(own)), own] = mine
+        apart = np.maximum(place[after] - place[after - 1], 1e-9)
+        share = np.clip((edges - place[after - 1]) / apart, 0, 1)
+        upper, lower = down[:, order[after - 1]], down[:, order[after]]
+        at_edge = (1.0 - share) * upper + share * lower
+        result = np.diff(at_edge, axis=1)[:, None, :] * (np.arange(STRETCHES) < own[:, None])
+        result[:, np.arange(len(own)), own] = down - at_edge[:, own] + line_response.LOCAL * down
         return result
 
     # --- the law
@@ -359,9 +329,7 @@ class CurrentSmoother:
         one, both = self.measured, np.eye(2)
         apart = np.abs(self.knots.depth[:, None] - self.knots.depth)
         alike = np.exp(-apart / CURRENT_REACH) * np.outer(self.spread, self.spread)
-        steady, weights = (
-            np.asarray(np.kron(both, one), np.float64) for one in (alike, self.knots.level)
-        )
+        steady, weights = (np.asarray(np.kron(both, each)) for each in (alike, self.knots.level))
         step = np.diff(self.hours, prepend=self.hours[:1])[:, None]
         fade = np.tile(np.exp(-step / self.scales.hours), (1, len(steady)))
         flow = np.hstack([one.u, one.v]) - weights @ self.mean
@@ -420,10 +388,8 @@ class CurrentSmoother:
         table = np.array([self.scales.flag.get(f, FLAGGED[4]) for f in range(256)])
         u, v = self.at_levels
         speed = np.hypot(u, v)
-        noise: Floats = (METER[0] ** 2 + (METER[1] * speed) ** 2) * table[
-            one.flag.astype(np.uint8)
-        ] ** 2
-        return noise
+        factor = table[one.flag.astype(np.uint8)]
+        return np.asarray((METER[0] ** 2 + (METER[1] * speed) ** 2) * factor**2)
 
     @property
     def at_levels(self) -> tuple[Floats, Floats]:
@@ -448,9 +414,8 @@ class CurrentSmoother:
         for turn in range(TURNS):
             there, before = self.linear(), self.depth
             if turn == 0:
-                off = np.nan_to_num(
-                    np.nanmedian(self.measured.depth - there[:, self.measured.point], axis=0)
-                )
+                missed = self.measured.depth - there[:, self.measured.point]
+                off = np.nan_to_num(np.nanmedian(missed, axis=0))
                 usual = float(np.median(off)) if len(off) else 0.0
                 square = [usual**2, 0.0, OFFSET**2 / TAILS["place"]]
                 self.first = self._heavy(np.repeat(square, [1, len(off), len(off)]))
@@ -590,12 +555,8 @@ class CurrentSmoother:
         down = np.maximum(there - self.still, 1.0)
         self.bend = np.minimum(0.5 * curved / down, down)
         beside = np.r_[at.share, at.factor]
-        self.depth = (
-            there
-            + self.bend
-            + self.surface[:, None]
-            + np.einsum("npz,nz->np", slope[:, :, beside], now[:, beside])
-        )
+        by_rest = np.einsum("npz,nz->np", slope[:, :, beside], now[:, beside])
+        self.depth = there + self.bend + self.surface[:, None] + by_rest
         self.deviation = np.sqrt(np.maximum(variance, 0.0))
 
     # --- results
@@ -678,8 +639,7 @@ class CurrentSmoother:
         wide = noise + spread
         log = np.log(odds / (1.0 - odds)) + np.log(noise / wide)
         log += 0.5 * self.off * (1.0 / noise - 1.0 / wide)
-        doubt: Floats = np.nan_to_num(1.0 / (1.0 + np.exp(-np.clip(log, -50.0, 50.0))))
-        return doubt
+        return np.asarray(np.nan_to_num(1.0 / (1.0 + np.exp(-np.clip(log, -50.0, 50.0)))))
 
     def by_meters(self, times: NDArray[np.int64]) -> tuple[LinearLaw, ReadCurrents, Linear]:
         """Return a linear model of the pressures at several times, with currents from meters alone.

@@ -17,18 +17,15 @@ Times = NDArray[np.datetime64]
 NO_TIME = np.datetime64("NaT", "ns")
 FALSE = 0.5  # probability above which the current of a level is reported as false
 ALL, LINE, CURRENTS = "all sensors", "the line", "all currents"
+# faults of the line and its currents, not of sensors; their sizes are logarithms
 OF_LINE = ("currents", "buoyancy", "length", "drag", "fouling")
-"""Faults of the line and its currents, not of sensors. Their sizes are logarithms."""
 LIKELY = 20.0  # odds above which a fault is reported
 FAR_OFFSET = 2.5  # offset of all sensors above which it is reported, in prior standard deviations
 FAR_DATUM = 10.0  # offset of all sensors that is always reported [m]
+# error in length above which it is reported if currents were not measured, in prior deviations;
+# inferred currents absorb much of an error in length
 FAR_LENGTH = 5.0
-"""Error in length above which it is reported if currents were not measured, in prior deviations.
-
-Inferred currents absorb much of an error in length.
-"""
-FAR_FACTOR = 3.0
-"""Distance of a drag factor from 1, in prior deviations, above which it absorbs another error."""
+FAR_FACTOR = 3.0  # deviations of a drag factor from 1 above which it absorbs another error
 WORST = 0.3  # share of the knockdown above which the error of the line is reported
 
 
@@ -101,9 +98,7 @@ class Fault:
         when, until = (np.datetime_as_string(one, "m") for one in (self.since, self.until))
         below = "below" if self.value > 0.0 else "above"
         share = f"{self.value:.2f} ({self.low:.2f} to {self.high:.2f})"
-        low, longer, high = sorted(
-            100.0 * abs(one - 1.0) for one in (self.value, self.low, self.high)
-        )
+        low, longer, high = sorted(100.0 * abs(f - 1.0) for f in (self.value, self.low, self.high))
         text = {
             "currents": f"they measure {share} times the true speed",
             "buoyancy": (
@@ -208,13 +203,10 @@ def calm_times(down: Floats, among: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Return a mask of the 10 % of the times in `among` with the smallest knockdown (n,), at least
     one.
     """
-    known = among & np.isfinite(down)
-    chosen = np.zeros_like(known)
-    count = int(known.sum())
-    if count:
-        where = np.flatnonzero(known)
-        rank = np.argsort(down[where], kind="stable")
-        chosen[where[rank[: max(round(CALM * count), 1)]]] = True
+    where = np.flatnonzero(among & np.isfinite(down))
+    rank = np.argsort(down[where], kind="stable")
+    chosen = np.zeros(len(down), bool)
+    chosen[where[rank[: max(round(CALM * len(where)), 1)]]] = True
     return chosen
 
 
@@ -227,8 +219,7 @@ def difference(
     """
     off = np.where(among, computed - measured, np.nan)
     at_rest = off[calm & np.isfinite(off)]
-    result: Floats = off - (at_rest.mean() if at_rest.size else np.nan)
-    return result
+    return np.asarray(off - (at_rest.mean() if at_rest.size else np.nan))
 
 
 def rms(off: Floats) -> float:
@@ -299,5 +290,4 @@ def pchip(depth: Floats, point: Integers, still: Floats, wanted: int) -> Floats:
     places = np.concatenate([[0.0], height[point][first]])
     values = np.concatenate([np.zeros((len(down), 1)), down], axis=1)
     between = PchipInterpolator(places, values, axis=1, extrapolate=True)(height[wanted])
-    result: Floats = np.where(known, still[wanted] + between, np.nan)
-    return result
+    return np.where(known, still[wanted] + between, np.nan)

@@ -153,8 +153,7 @@ def parse_flags(text: str) -> frozenset[int]:
     return flags
 
 
-FURTHEST = 20.0
-"""Maximum distance of a sea-surface height from the median [m]: more than twice any real tide."""
+FURTHEST = 20.0  # most distance of a sea-surface height from the median [m]: twice any real tide
 
 _STANDARD = (
     *(f"sea_surface_height_above_{of}" for of in ("mean_sea_level", "geoid", "geopotential_datum")),
@@ -300,13 +299,10 @@ def air_notes(depth: Floats, place: Floats) -> list[str]:
     ]
 
 
+# Limits for another unit of all readings, which random errors of 1 to 20 m for each sensor, with or
+# without a common error, pass in at most 0.3 % of trials: share of the errors that may remain, of
+# those as read and of those after removal of their mean; and least error as read [m]
 EXPLAINED, BEYOND, LEAST = 0.05, 0.2, 1.0
-"""Share of the errors that may remain if all readings are in another unit: of the errors as read,
-and of the errors after removal of their mean; and least error as read [m].
-
-Random errors of 1 to 20 m for each sensor, with or without a common error, pass these limits in at
-most 0.3 % of trials.
-"""
 
 
 def metre_notes(measured: Floats, expected: Floats, latitude: float) -> list[str]:

@@ -110,10 +110,8 @@ class MotionEstimate:
         for j, label in enumerate(used.label):
             depth, spread = depths_at(self.dataset, int(used.point[j]))
             (line,) = ax.plot(time, depth, label=label, linewidth=1.0)
-            colour = line.get_color()
-            ax.fill_between(
-                time, depth - BAND * spread, depth + BAND * spread, color=colour, alpha=0.25
-            )
+            colour, half = line.get_color(), BAND * spread
+            ax.fill_between(time, depth - half, depth + half, color=colour, alpha=0.25)
             ax.plot(time, used.depth[:, j], ".", color=colour, markersize=2.0)
         ax.set_ylabel("depth [m]")
         if not ax.yaxis_inverted():
@@ -167,10 +165,8 @@ def prepare(
         slips = [one for one in found if one.kind == "slip" and one.certain]
         if slips:
             begin = np.searchsorted(used.time, [one.since for one in slips]).tolist()
-            sensors = [used.label.index(one.label) for one in slips]
-            smoother.solve(
-                [(j, t, one.value) for j, t, one in zip(sensors, begin, slips, strict=True)]
-            )
+            pairs = zip(begin, slips, strict=True)
+            smoother.solve([(used.label.index(one.label), t, one.value) for t, one in pairs])
             return Task(mooring, used, smoother.common(), smoother)
         return replace(task, faults=found)
     used = with_knots(used, mooring)
@@ -326,10 +322,8 @@ def depths_at(result: Dataset, point: int) -> tuple[Floats, Floats]:
 def series_of(study: MotionEstimate, measured: MooringMeasurements) -> list[SensorSeries]:
     """Return the depths of all sensors from the top down, then those of the other instruments."""
     mooring, used, result = study.task.mooring, study.task.measured.label, study.dataset
-    labels, columns = (
-        labels_of(mooring),
-        dict(zip(measured.point.tolist(), measured.depth.T, strict=True)),
-    )
+    labels = labels_of(mooring)
+    columns = dict(zip(measured.point.tolist(), measured.depth.T, strict=True))
     nothing, found = np.full(len(measured.time), np.nan), []
     for point in dict.fromkeys([*columns, *instruments_of(mooring)]):
         label, plain = labels[point], None

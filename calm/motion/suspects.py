@@ -24,14 +24,11 @@ from calm.motion.measurements import MooringMeasurements, exclude_readings
 from calm.motion.remarks import ALL, BAND, CURRENTS, LINE, Fault
 from calm.physics.line import Floats
 
+# prior standard deviation of the logarithm of each fault, and its prior probability
 CAUSES: Mapping[str, tuple[float, float]] = {
-    "currents": (0.3, 0.02),
-    "buoyancy": (0.3, 0.02),
-    "length": (0.02, 0.02),
-    "drag": (0.3, 0.02),
+    "currents": (0.3, 0.02), "buoyancy": (0.3, 0.02), "length": (0.02, 0.02), "drag": (0.3, 0.02),
     "fouling": (0.5, 0.02),
-}
-"""Prior standard deviation of the logarithm of each fault, and its prior probability."""
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -75,12 +72,9 @@ def line_suspects(task: Task, read: ReadCurrents, at: Linear, share: Floats) -> 
     yield suspect(CURRENTS, "currents", -at.slope[:, :, 0])
 
 
-GOOD, FEWEST_TIMES = 2, 20
-"""Highest quality flag of a usable current, and least number of times that two meters share."""
-COHERENT, TURNED, UNLIKE = 0.8, 10.0, 5.0
-"""Correlation of a level with its neighbours, and the rotation [degrees] or speed ratio, above
-which a meter is reported.
-"""
+GOOD, FEWEST_TIMES = 2, 20  # highest quality flag of a usable current, and least shared times
+COHERENT = 0.8  # least correlation of a level with its neighbours
+TURNED, UNLIKE = 10.0, 5.0  # rotation [degrees] and speed ratio above which a meter is reported
 
 
 def meter_remarks(measured: MooringMeasurements, names: Sequence[str]) -> list[str]:
@@ -141,8 +135,7 @@ def meter_remarks(measured: MooringMeasurements, names: Sequence[str]) -> list[s
     return remarks
 
 
-STRETCHED, AMISS = 1.25, 20.0
-"""Maximum ratio of stretched to unstretched length, and tolerance for depths [m]."""
+STRETCHED, AMISS = 1.25, 20.0  # most ratio of stretched to unstretched length, and tolerance [m]
 
 
 def distances_of(mooring: Design) -> Floats:
@@ -185,10 +178,9 @@ def torn(
     ]
 
 
-EITHER_SIDE, CLEAR, LEAST_STEP = 4, 8.0, 3.0
-"""Number of times averaged on either side of a step, least ratio of the step of the lowest sensor
-to its usual change, and least size of a step [m].
-"""
+EITHER_SIDE = 4  # number of times averaged on either side of a step
+CLEAR = 8.0  # least ratio of the step of the lowest sensor to its usual change
+LEAST_STEP = 3.0  # least size of a step [m]
 
 
 def common_step(measured: MooringMeasurements, still: Floats) -> Fault | None:
