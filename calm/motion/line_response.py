@@ -136,7 +136,10 @@ def instruments_of(mooring: Design) -> list[int]:
 
 
 SPAN = 0.25  # correlation length of the error in knockdown, as a share of the line
-LOCAL = 0.3  # local error of a point, from bends at floats and clamps, as a share of its knockdown
+# Local error of a point, from bends at floats and clamps, as a share of its knockdown. Without it,
+# dune2 is 8 % better, synthetic moorings with ten-minute meters 3 % worse, and RAPID's depths
+# without currents up to 26 % worse
+LOCAL = 0.3
 
 
 def own_errors(depth: Floats, still: Floats, learnt: bool) -> Floats:

@@ -60,8 +60,6 @@ HOURS = (4.0, 16.0)  # limits of the estimated correlation time [h]; a longer on
 WIDER = 2.0
 METERS_ALIKE = 0.02  # error common to all meters of a record, as a share of the speed
 
-# Without `LOCAL`, dune2 is 8 % better, synthetic moorings with ten-minute meters 3 % worse, and
-# RAPID's depths without currents up to 26 % worse
 STRETCHES = 10  # number of stretches with separate errors in knockdown
 SHARE, SHARES = 0.07, (0.01, 0.4)  # prior and limits of the error share of a stretch
 LINE_HOURS = 6.0  # correlation time of the error of a stretch [h]

@@ -229,10 +229,10 @@ def raised(mooring: Design, measured: MooringMeasurements) -> float:
     Currents only lower a line, so the water depth, a length or the place in the file is then wrong.
     The result is negative, or 0 if no sensor is far above its place.
     """
-    place = Forward(mooring, {}).still[measured.point]
-    depth = measured.depth - measured.moved[:, None] - place
-    known = depth[:, np.isfinite(depth).any(axis=0)]
-    high = float(np.nanpercentile(known, LEAST_PART, axis=0).min(initial=0.0))
+    depth = measured.depth - measured.moved[:, None]
+    known = np.isfinite(depth).any(axis=0)
+    least = np.nanpercentile(depth[:, known], LEAST_PART, axis=0)
+    high = float((least - Forward(mooring, {}).still[measured.point[known]]).min(initial=0.0))
     return high if high < -HIGH else 0.0
 
 
