@@ -72,7 +72,7 @@ class MotionEstimate:
     diagnosis : faults of sensors, line and currents, with sizes and odds
     fits : whether the line is consistent with the pressures
     remarks : doubts about the data, in sentences
-    false : for each level by name, the times at which its current is probably false
+    false : times at which the current at a level is probably false, by name of the level
     notes : notes on the input, in sentences
     """
 
@@ -252,7 +252,7 @@ def judge_hidden(
     spread: Floats,
     still: Floats,
 ) -> HeldOut:
-    """Compare the estimate, and two interpolations between other sensors, with a withheld sensor.
+    """Compare the depths of a withheld sensor with the estimate and with two interpolations.
 
     The sensor has an estimated depth (n,), and its standard deviation [m]; `still` are the depths
     of all points in still water [m].
@@ -284,7 +284,10 @@ def cross_validated(
     tell: Callable[[str], None],
     workers: int | None = None,
 ) -> list[HeldOut]:
-    """Withhold each sensor in turn, in addition to `hidden`, and compare the estimate with it."""
+    """Estimate the depth of each sensor from the others, and return the errors.
+
+    Each sensor is withheld in turn, in addition to the sensors in `hidden`.
+    """
     still = Forward(mooring, {}).still
     held = []
     for label in several(measured, hidden):

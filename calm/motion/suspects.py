@@ -3,7 +3,7 @@
 Faults of the line and its currents are: currents that read too low or too high, missing floats,
 wrong cable lengths, wrong drag, and drag that increases by fouling. Some of these have nearly the
 same effect on the depths; their odds then show that the record cannot distinguish them. The module
-also finds readings of two sensors that are farther apart than the length of the line between them.
+also finds readings that differ in depth by more than the length of line between the two sensors.
 """
 
 from __future__ import annotations
@@ -80,11 +80,12 @@ TURNED, UNLIKE = 10.0, 5.0  # rotation [degrees] and speed ratio above which a m
 def meter_remarks(measured: MooringMeasurements, names: Sequence[str]) -> list[str]:
     """Return a remark on each current meter with rotated or mirrored readings, or a wrong unit.
 
-    A meter is reported if it disagrees with the two nearest meters although these agree. Agreement
-    is measured by the complex correlation r of the currents over the whole record. The phase of r
-    is the mean angle between the currents (Kundu 1976, J. Phys. Oceanogr. 6, 238-242), with a
-    standard deviation of sqrt((1 - r²) / (2 r² n)) for n independent times. Exchanged east and
-    north components are found from the correlation with the mirrored current.
+    A meter is reported if it disagrees with its two nearest meters, and these two agree with each
+    other. Agreement is measured by the complex correlation r of the currents over the whole record.
+    The phase of r is the mean angle between the two currents (Kundu 1976, J. Phys. Oceanogr. 6,
+    238-242). For n independent times, it has the standard deviation sqrt((1 - r²) / (2 r² n)). A
+    correlation with the mirrored current indicates that the east and north components are
+    exchanged.
     """
     flow = np.where(measured.flag <= GOOD, measured.u + 1j * measured.v, np.nan)
 
@@ -153,12 +154,12 @@ def distances_of(mooring: Design) -> Floats:
 def torn(
     measured: MooringMeasurements, distance: Floats, hidden: Collection[str] = ()
 ) -> tuple[MooringMeasurements, list[str]]:
-    """Remove readings of two sensors that are farther apart in depth than along the line.
+    """Remove readings that differ in depth by more than the length of line between the sensors.
 
-    The reading that is farther from the median of its sensor is removed. If half or more of the
-    readings of a sensor would be removed, all are kept. Distances (p,) of the points are from the
-    top, along the line [m]. The sensors `hidden` are neither tested nor used to test others. Also
-    return notes on the removal.
+    Of two such readings, the one that is farther from the median of its sensor is removed. If half
+    or more of the readings of a sensor would be removed, all are kept. Distances (p,) of the points
+    are from the top, along the line [m]. The sensors `hidden` are neither tested nor used to test
+    others. Also return notes on the removal.
     """
     depth, place = measured.depth, distance[measured.point]
     used = [i for i, label in enumerate(measured.label) if label not in hidden]

@@ -224,10 +224,10 @@ def learn_currents(
 
 
 def raised(mooring: Design, measured: MooringMeasurements) -> float:
-    """Return measured minus still-water depth [m] of the sensor that is farthest above its place.
+    """Return the depth error [m] of the sensor that is farthest above its still-water depth.
 
-    Currents only lower a line, so the water depth, a length or the place in the file is then wrong.
-    The result is negative, or 0 if no sensor is far above its place.
+    Currents only lower a line, so the water depth, a length or the position in the file is then
+    wrong. The result is negative, or 0 if no sensor is far above its still-water depth.
     """
     depth = measured.depth - measured.moved[:, None]
     known = np.isfinite(depth).any(axis=0)
