@@ -32,8 +32,8 @@ class MooringDepths:
     time: NDArray[np.datetime64]  # (n,) increasing times, with a resolution of a nanosecond
     # the points, each with a depth in weak currents (5th percentile of its depths)
     places: LinePlaces
-    depth: Floats  # (n, p) depths and standard deviations [m]
-    deviation: Floats
+    depth: Floats  # (n, p) depths [m]
+    deviation: Floats  # (n, p) standard deviations of the depths [m]
     place: tuple[float, ...]  # latitude and longitude of the mooring [degrees]; empty if unknown
     seabed: float  # depth of the last piece, which is the anchor [m]; NaN if unknown
     attributes: Mapping[str, Any]  # global attributes of the file
@@ -89,10 +89,10 @@ MOST = 5_000_000  # maximum number of times written: one a second for two months
 class Samples:
     """Values of one quantity at n times, from s instruments listed from the top down."""
 
-    time: Times  # (n,) increasing times, and (s,) labels of the instruments
-    label: tuple[str, ...]
-    depth: Floats  # (n, s) depths of the instruments and their standard deviations [m]
-    deviation: Floats
+    time: Times  # (n,) increasing times
+    label: tuple[str, ...]  # (s,) labels of the instruments
+    depth: Floats  # (n, s) depths of the instruments [m]
+    deviation: Floats  # (n, s) standard deviations of the depths [m]
     value: Floats  # (n, s) values in the unit of the quantity; NaN if not measured
 
 

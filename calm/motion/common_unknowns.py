@@ -123,9 +123,8 @@ ROBUST = 4.0  # degrees of freedom of Student's t distribution for the misfit at
 class LinearLaw:
     """Linear model of the readings at n times, for the unknowns of the whole record."""
 
-    # (n,) times, and the share of the record that has elapsed (0 to 1)
-    time: NDArray[np.datetime64]
-    share: Floats
+    time: NDArray[np.datetime64]  # (n,) times
+    share: Floats  # (n,) share of the record that has elapsed, 0 to 1
     known: NDArray[np.bool_]  # (n, s) whether a reading exists
     raw: Floats  # (n, s) measured minus computed depths [m], with all unknowns zero
     left: Floats  # (n, s) as `raw`, but with the unknowns at the state of linearisation

@@ -45,8 +45,8 @@ class Linear:
 class SpeedLaw:
     """Log-normal prior distribution of the current speeds at k knots."""
 
-    mean: Floats  # (k,) mean and (k, k) covariance of the logarithms of the speeds [m/s]
-    covariance: Floats
+    mean: Floats  # (k,) mean of the logarithms of the speeds [m/s]
+    covariance: Floats  # (k, k) covariance of these logarithms
     # stored models of the line: first at the mean speeds, then at the times from which the
     # distribution was learnt; their states are relative to `mean`
     kept: Linear | None = None

@@ -57,8 +57,8 @@ class _Found:
     """Likelihood of the pressures with a set of faults."""
 
     log: float  # logarithm of the likelihood
-    value: float  # size of the last fault, and its standard deviation
-    deviation: float
+    value: float  # size of the last fault
+    deviation: float  # standard deviation of this size
     left: Floats  # (n, s) residuals [m]
     # (n,) derivative of the log-likelihood of each time by the size of the last fault
     pulls: Floats

@@ -56,12 +56,12 @@ _OF_MOTION = ("title", "keywords", "references")  # attributes that describe a m
 class Instruments:
     """A file of one or more instruments, to which estimated depths are to be added."""
 
-    path: Path  # path of the file
-    clock: str  # names of the time variable and of the time dimension
-    dimension: str
+    path: Path
+    clock: str  # name of the time variable
+    dimension: str  # name of the time dimension
     along: str | None  # name of the dimension of the instruments; None for a single instrument
-    time: NDArray[np.datetime64]  # (n,) times
-    who: tuple[Identity, ...]  # identities of the instruments
+    time: NDArray[np.datetime64]
+    who: tuple[Identity, ...]  # the instruments
     # point of the line for each instrument; None for an unmatched instrument
     point: tuple[int | None, ...]
 

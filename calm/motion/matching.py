@@ -23,8 +23,8 @@ class LinePlaces:
     """The p points of a line to which instruments may be matched."""
 
     name: str  # path of the mooring file
-    label: tuple[str, ...]  # (p,) labels and serial numbers; the serial number is empty if unknown
-    serial: tuple[str, ...]
+    label: tuple[str, ...]  # (p,) labels of clamps and pieces
+    serial: tuple[str, ...]  # (p,) serial numbers; empty if unknown
     clamps: int  # number of clamps, which precede the other points
     still: Floats  # (p,) depths in still water [m]
 
@@ -62,8 +62,8 @@ def without(measured: MooringMeasurements, labels: Sequence[str]) -> MooringMeas
 class Clock:
     """Clock error of an instrument, which grows linearly from zero."""
 
-    since: np.datetime64  # times at which the clock was set, and compared with the true time
-    checked: np.datetime64
+    since: np.datetime64  # time at which the clock was set
+    checked: np.datetime64  # time at which the clock was compared with the true time
     late: float  # lag of the clock at the time `checked` [s]; positive if the clock was behind
 
     def true_times(self, time: NDArray[np.datetime64]) -> NDArray[np.datetime64]:

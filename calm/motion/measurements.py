@@ -41,8 +41,8 @@ class MooringMeasurements:
     depth: Floats
     level_depth: Floats  # (n, k) depths of the levels [m]; NaN for levels on the line
     level_point: Integers  # (k,) points of the levels on the line; `FREE` for fixed levels
-    u: Floats  # (n, k) eastward and northward current [m/s]; NaN if missing
-    v: Floats
+    u: Floats  # (n, k) eastward current [m/s]; NaN if missing
+    v: Floats  # (n, k) northward current [m/s]; NaN if missing
     flag: NDArray[np.int8]  # (n, k) quality flags of the current; 0 if the file has no flags
     # (n,) height of the sea surface above mean sea level [m]; None if unknown
     tide: Floats | None = None
@@ -296,10 +296,10 @@ class CurrentMeasurements:
     depth: Floats  # (n, k) depths of the levels [m]; NaN for levels on the line
     # (k,) label of the part of the line at each level; empty for levels at fixed depths
     label: tuple[str, ...]
-    u: Floats  # (n, k) eastward and northward current [m/s]
-    v: Floats
+    u: Floats  # (n, k) eastward current [m/s]
+    v: Floats  # (n, k) northward current [m/s]
     flag: NDArray[np.int8]  # (n, k) quality flags; 0 if the file has no flags
-    source: str  # name of the file, and remarks on the file
+    source: str  # name of the file
     notes: tuple[str, ...] = ()
     # (n,) whether an impossible current was removed; None if none was removed
     false: NDArray[np.bool_] | None = None

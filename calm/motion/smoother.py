@@ -29,8 +29,8 @@ class StateSpace:
     stepped: Floats  # (n, q) variance added to each persistent state since the previous time
     first: Floats  # (q, q) covariance of the states at the first time; their prior mean is always 0
     seen: Floats  # (n, m, q) derivatives of the readings with respect to the states
-    read: Floats  # (n, m) readings, NaN if missing, and variances of their errors
-    noise: Floats
+    read: Floats  # (n, m) readings; NaN if missing
+    noise: Floats  # (n, m) variances of the errors of the readings
 
     def added(self, time: int) -> Floats:
         """Return the (q, q) covariance of the state noise since the previous time."""
@@ -56,9 +56,9 @@ class _Filtered:
 class Smoothed:
     """Smoothed states at b successive times, given all readings of the record."""
 
-    times: slice  # slice of the times
-    mean: Floats  # (b, q) mean and (b, q, q) covariance of the states
-    covariance: Floats
+    times: slice
+    mean: Floats  # (b, q) mean of the states
+    covariance: Floats  # (b, q, q) covariance of the states
     # vector r (b, q) and matrix N (b, q, q) of Durbin and Koopman: the state noise before each
     # time, of prior covariance Q, has the mean Q r and the covariance Q - Q N Q
     pull: Floats

@@ -52,8 +52,8 @@ class HeldOut:
     count: int  # number of times with good pressures of this sensor and of all sensors in use
     bias: float  # mean of estimated minus measured depth [m]
     rms: float  # root mean square of the `difference` of estimated and measured depth [m]
-    linear_rms: float  # as `rms`, for depths interpolated by `linear` and `pchip` [m]
-    pchip_rms: float
+    linear_rms: float  # as `rms`, for depths interpolated by `linear` [m]
+    pchip_rms: float  # as `rms`, for depths interpolated by `pchip` [m]
     coverage: float  # share of the differences within the 95 % interval of the estimate
 
 
@@ -307,8 +307,8 @@ class SensorSeries:
     hidden: bool  # True if the estimate uses no pressure of this sensor
     time: NDArray[np.datetime64]  # (n,) times
     measured: Floats  # (n,) measured depths [m]; NaN if not measured
-    estimated: Floats  # (n,) estimated depths and their standard deviations [m]
-    spread: Floats
+    estimated: Floats  # (n,) estimated depths [m]
+    spread: Floats  # (n,) standard deviations of the estimated depths [m]
     # (n,) depths computed from the measured currents alone [m]; otherwise None
     plain: Floats | None
 

@@ -59,11 +59,11 @@ class Posterior:
 
     logs: Floats  # (n, g) logarithms of the factors on the currents, relative to the prior mean
     sea: Floats  # (n,) height of the sea surface above its mean [m]
-    depth: Floats  # (n, p) depths of the points [m] and their variances [m²]
-    variance: Floats
+    depth: Floats  # (n, p) depths of the points [m]
+    variance: Floats  # (n, p) variances of these depths [m²]
     evidence: Floats  # (n,) log probability density of the measured depths
-    innovation: Floats  # (n, s) measured minus predicted depths [m], and covariance (n, s, s)
-    expected: Floats
+    innovation: Floats  # (n, s) measured minus predicted depths [m]
+    expected: Floats  # (n, s, s) covariance of the innovation [m²]
 
 
 @dataclass(frozen=True)
