@@ -130,9 +130,7 @@ def profile_of(samples: Samples, noise: float) -> RecordProfile:
 
 
 def spacing(samples: Samples) -> float:
-    """Return the median vertical spacing of the instruments that are not almost at the same depth
-    [m].
-    """
+    """Return the median vertical spacing of instruments that are not nearly at one depth [m]."""
     place = np.sort(np.nanmean(samples.depth[:, np.isfinite(samples.value).any(axis=0)], axis=0))
     apart = np.diff(place)
     wide = apart[apart > 0.2 * (place[-1] - place[0]) / max(len(apart), 1)]
@@ -194,9 +192,7 @@ def _block(field: GriddedQuantity, times: NDArray[np.int64]) -> _Block:
 
 
 def _slopes(samples: Samples, times: NDArray[np.int64], at: Floats) -> tuple[Floats, Floats]:
-    """Estimate vertical gradients at depths (n, k) [m] from the sensors around, and their depth
-    errors.
-    """
+    """Estimate vertical gradients at depths (n, k), and depth errors, from nearby sensors [m]."""
     depth, value, error = (
         table[times][:, None, :] for table in (samples.depth, samples.value, samples.deviation)
     )
@@ -222,9 +218,7 @@ def _correlation(a: Floats, b: Floats, s: Floats, t: Floats, scales: Scales) -> 
 
 
 def posterior(field: GriddedQuantity, times: NDArray[np.int64], levels: Floats) -> LevelPosterior:
-    """Compute the posterior (n, k) at times with the indices (n,), and at depths (k,) or (n, k)
-    [m].
-    """
+    """Compute the posterior (n, k) at times of given indices (n,) and depths (k,) or (n, k) [m]."""
     block = _block(field, times)
     level = np.broadcast_to(np.atleast_2d(levels), (len(times), np.atleast_2d(levels).shape[1]))
     spread = field.profile.deviation_at(level)

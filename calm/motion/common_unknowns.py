@@ -99,9 +99,7 @@ LONGEST_MEMORY = 25  # maximum number of times over which the error correlation 
 
 
 def repeated(pull: Floats) -> float:
-    """Return the number of successive times that share an error, from the autocorrelation of
-    `pull`.
-    """
+    """Return the number of successive times that share an error, by autocorrelation of `pull`."""
     one = pull - pull.mean()
     whole = float(one @ one)
     total, chance = 1.0, 2.0 / np.sqrt(max(len(one), 1))
@@ -145,9 +143,7 @@ class LinearLaw:
         return np.asarray((ROBUST + self.known.sum(axis=1)) / (ROBUST + misfit))
 
     def pulls(self, seen: Floats, left: Floats) -> Floats:
-        """Return (n, q) gradients of the log-likelihood, for residuals (n, s) and derivatives (n,
-        s, q).
-        """
+        """Return (n, q) gradients of the log-likelihood, for residuals (n, s), slopes (n, s, q)."""
         return np.asarray(np.einsum("n,nsq,nst,nt->nq", self.weight, seen, self.inverse, left))
 
     def normal(self, seen: Floats) -> Floats:

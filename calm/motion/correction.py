@@ -159,9 +159,7 @@ def about(mooring: Design) -> Attributes:
 
 
 def depth_flags(one: MooringMeasurements, profiles: Profiles) -> dict[str, NDArray[np.int8]]:
-    """Return a flag for each depth; measured if the point has a sensor with a pressure at that
-    time.
-    """
+    """Return a flag for each depth: measured by a pressure of the point, estimated, or missing."""
     clamps, depth = profiles.clamp_depth.shape[1], points(profiles)
     flag = np.where(np.isfinite(depth), ESTIMATED, MISSING).astype(np.int8)
     for j, point in enumerate(one.point.tolist()):

@@ -11,9 +11,7 @@ from calm.physics.line import Floats
 
 @dataclass(frozen=True)
 class ReadCurrents:
-    """East and north currents u, v (n, k) at levels of depth (n, k), as used to solve the line
-    [m/s, m].
-    """
+    """Currents u, v to east and north [m/s] at levels [m], each (n, k), to solve the line."""
 
     level: Floats
     u: Floats
@@ -30,9 +28,7 @@ class Linear:
     common: Floats  # (n, p, f) derivatives by the logarithms of the common factors
 
     def moved(self, logs: Floats, depth: Floats) -> Linear:
-        """Return the model at another state of known depths, with slopes updated by Broyden's
-        method.
-        """
+        """Return the model at a state of known depths, with slopes updated by Broyden's method."""
         step = logs - self.logs
         size = (step**2).sum(axis=1)[:, None]
         miss = depth - self.depth - np.einsum("npg,ng->np", self.slope, step)

@@ -97,9 +97,7 @@ class Forward:
         return points(self.solve(depth, u, v))
 
     def slopes(self, depth: Floats, u: Floats, v: Floats) -> tuple[Floats, Floats]:
-        """Return depths (n, p) of the points [m], and derivatives (n, p, 2 k) by all u, then all v
-        [s].
-        """
+        """Return depths (n, p) of the points [m], and derivatives (n, p, 2 k) by u, then v [s]."""
         profiles, slopes = self._batch.slopes(u, v, depth)
         return points(profiles), slopes
 
@@ -125,9 +123,7 @@ def labels_of(mooring: Design) -> tuple[str, ...]:
 
 
 def instruments_of(mooring: Design) -> list[int]:
-    """Return the points that may be instruments: clamped items other than floats, and pieces by
-    role.
-    """
+    """Return the points that may be instruments: clamped items except floats, pieces by role."""
     pieces = mooring.file.pieces
     clamps = clamps_down(pieces)
     fixed = [i for i, clamp in enumerate(clamps) if clamp.component.role != "float"]

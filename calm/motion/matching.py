@@ -209,9 +209,7 @@ def points_of(series: Sequence[Identity], line: LinePlaces) -> tuple[dict[int, i
 
 
 def named_point(one: Identity, line: LinePlaces) -> int | None:
-    """Return the only point that has the label of an instrument or, failing that, its serial
-    number.
-    """
+    """Return the only point that has the label of an instrument, or else its serial number."""
     at = _index(one.label, line.label)
     if at is None:
         at = _index(one.serial.lstrip("0"), [serial.lstrip("0") for serial in line.serial])

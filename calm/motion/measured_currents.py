@@ -125,8 +125,10 @@ def knots_of(place: Floats, top: float, seabed: float) -> Knots:
 
 @dataclass(frozen=True)
 class Columns:
-    """Slices of the state vector: currents at the knots, relative errors of the stretches of the
-    line, tide, logarithms of the factors, datum, and zeros and places of the sensors on the line.
+    """Slices of the state vector: currents at the knots, errors of the stretches, and tide.
+
+    These are followed by the logarithms of the factors, the datum, and errors in the zeros of the
+    sensors and in their places on the line.
     """
 
     current: slice
@@ -260,9 +262,7 @@ class CurrentSmoother:
         return self._forwards[key]
 
     def linear(self) -> Floats:
-        """Return (n, p) depths of the points [m]; recompute slopes at times where the state has
-        changed.
-        """
+        """Return (n, p) depths of the points [m], with new slopes where the state has changed."""
         now, factor = self.state[:, self.columns.current], self.factor
         far = np.abs(now - self._slopes_at).max(axis=1) > STALE
         far |= (np.abs(factor - self._slopes_factor) > FACTOR_STEP).any()
@@ -302,9 +302,7 @@ class CurrentSmoother:
         return edges, own, np.exp(-np.abs(middle[:, None] - middle) / span)
 
     def by_line(self, there: Floats) -> Floats:
-        """Return derivatives (n, p, z) of the depths (n, p) [m] by the relative errors of z
-        stretches.
-        """
+        """Return derivatives (n, p, z) of depths (n, p) [m] by relative errors of z stretches."""
         edges, own, _ = self._stretches
         order = np.argsort(self.still, kind="stable")
         down = np.maximum(np.nan_to_num(there - self.still), 0.0)
@@ -321,9 +319,7 @@ class CurrentSmoother:
     # --- the law
 
     def meter_law(self) -> StateSpace:
-        """Return a state-space model of the currents at the knots, with the readings of the meters
-        alone.
-        """
+        """Return a state-space model of the currents at the knots, as read by the meters alone."""
         one, both = self.measured, np.eye(2)
         apart = np.abs(self.knots.depth[:, None] - self.knots.depth)
         alike = np.exp(-apart / CURRENT_REACH) * np.outer(self.spread, self.spread)

@@ -81,9 +81,7 @@ class MooringMeasurements:
 
 
 def chosen_times(measured: MooringMeasurements, alone: bool = False) -> Integers:
-    """Choose up to `MOST_TIMES` times with a pressure and, unless `alone`, a current, evenly
-    spread.
-    """
+    """Choose up to `MOST_TIMES` times with a pressure and, unless `alone`, a current."""
     currents = (np.isfinite(measured.u) & np.isfinite(measured.v)) | alone
     used = np.flatnonzero(np.isfinite(measured.depth).any(axis=1) & currents.any(axis=1))
     if len(used) <= MOST_TIMES:
@@ -102,9 +100,7 @@ def level_names(measured: MooringMeasurements, labels: Sequence[str]) -> tuple[s
 
 
 def nearest(time: Times, wanted: Times) -> Integers:
-    """Return the index (n,) of the increasing times nearest to each wanted time; in a tie, the
-    earlier.
-    """
+    """Return the index (n,) of the time nearest to each wanted time; in a tie, the earlier time."""
     after = np.clip(np.searchsorted(time, wanted), 0, len(time) - 1)
     before = np.maximum(after - 1, 0)
     earlier = np.abs(wanted - time[before]) <= np.abs(time[after] - wanted)

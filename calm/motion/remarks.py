@@ -200,9 +200,7 @@ class Agreement:
 
 
 def calm_times(down: Floats, among: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return a mask of the 10 % of the times in `among` with the smallest knockdown (n,), at least
-    one.
-    """
+    """Return a mask of the 10 % of the times in `among` with the smallest knockdown (n,)."""
     where = np.flatnonzero(among & np.isfinite(down))
     rank = np.argsort(down[where], kind="stable")
     chosen = np.zeros(len(down), bool)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.case import Design
-from calm.errors import UsageError, unknown
+from calm.errors import UsageError
 from calm.motion.correction import Task, estimate_in_memory
 from calm.motion.diagnosis import diagnosed
 from calm.motion.line_response import Forward, instruments_of, labels_of
@@ -150,10 +150,6 @@ def prepare(
     The measurements include the withheld sensors, `hidden`; `names` are the factors to estimate.
     Progress messages are passed to `tell`.
     """
-    for label in hidden:
-        if label not in measured.label:
-            what = f"--hold-out: no sensor is called `{label}`"
-            raise UsageError(unknown(what, label, measured.label))
     used = without(measured, hidden)
     if not used.label:
         raise UsageError("--hold-out: at least one sensor must remain for the estimate")
@@ -233,9 +229,7 @@ def judged(
 
 
 def knockdown(used: MooringMeasurements) -> Floats:
-    """Return the knockdown (n,) of the highest sensor that has a pressure, from its least depth
-    [m].
-    """
+    """Return the knockdown (n,) of the highest sensor with a pressure, from its least depth [m]."""
     down = np.full(len(used.time), np.nan)
     for j in range(len(used.label)):
         depth = used.depth[:, j]

@@ -165,7 +165,6 @@ def test_each_sensor_is_hidden_in_turn_beside_those_that_are_anyway(line, monkey
     for call in (
         lambda: several(measured(), ["a", "b"]),
         lambda: prepare(None, measured(), (), ["a", "b", "c"]),
-        lambda: prepare(None, measured(), (), ["d"]),
     ):
-        with pytest.raises(UsageError, match=r"at least two|no sensor is|at least one sensor"):
+        with pytest.raises(UsageError, match=r"at least two|at least one sensor"):
             call()
