@@ -116,10 +116,12 @@ def hung_currents(
         sized = [str(dim) for dim, size in dataset.sizes.items() if size == levels]
         along: Sequence[str | None] = sized if levels > 1 else [None]
         each_way = [who_along(dataset, dim, seabed, path.name) for dim in along]
-    who = next((who for who in each_way if any(one.serial or one.label for one in who)), [])
+    who = next((who for who in each_way if any(each.serial or each.label for each in who)), [])
+    if len(who) != levels:
+        return one, []
     place = np.array([each.nominal for each in who])
     own = np.nanmedian(np.where(np.isfinite(one.depth), one.depth, np.nan), axis=0)
-    if len(who) != levels or not np.nanmax(np.abs(own - place), initial=0.0) < CERTAIN:
+    if not np.nanmax(np.abs(own - place), initial=0.0) < CERTAIN:
         return one, []
     try:
         points, sentences = points_of(who, line)
