@@ -72,7 +72,7 @@ def common_beforehand(
 
 
 def fixed_slopes(common: Floats) -> Floats:
-    """Append derivatives by datum and offsets to those by the factors, (n, s, f)."""
+    """Append derivatives by the datum and the offsets to derivatives (n, s, f) by the factors."""
     n, s, _ = common.shape
     offsets = np.broadcast_to(np.eye(s), (n, s, s))
     return np.concatenate([common, np.ones((n, s, 1)), offsets], axis=2)

@@ -68,7 +68,7 @@ Weighed = list[tuple[Suspect, float]]
 
 
 def diagnosed(task: Task) -> tuple[Fault, ...]:
-    """Return the likely faults of sensors, currents and line, or those that the task holds."""
+    """Return the likely faults of sensors, currents and line, unless the task has them already."""
     if task.faults is not None:
         return task.faults
     law, causes = law_near(task)

@@ -243,7 +243,7 @@ class CurrentSmoother:
         return whole[:, :count], whole[:, count:]
 
     def depths(self, state: Floats, factor: Floats, times: NDArray[np.int64] | slice) -> Floats:
-        """Return (n, p) depths of the points [m] in currents (n, 2 K) at the knots, less the mean.
+        """Return (n, p) depths of the points [m] in currents (n, 2 K) relative to their mean.
 
         The factors have the logarithms (f,); the currents are those of the times with these
         indices.
@@ -262,7 +262,7 @@ class CurrentSmoother:
         return self._forwards[key]
 
     def linear(self) -> Floats:
-        """Return (n, p) depths of the points [m], with new slopes where the state has changed."""
+        """Return (n, p) depths of the points [m], and renew slopes if the state has changed."""
         now, factor = self.state[:, self.columns.current], self.factor
         far = np.abs(now - self._slopes_at).max(axis=1) > STALE
         far |= (np.abs(factor - self._slopes_factor) > FACTOR_STEP).any()

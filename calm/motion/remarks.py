@@ -50,7 +50,7 @@ class Fault:
 
     @property
     def size(self) -> float:
-        """Deviation of `value` from no fault; for a fault of the line, the logarithm of `value`."""
+        """Deviation of `value` from no fault, as a logarithm for faults of the line."""
         if self.kind in OF_LINE:
             return float(np.log(self.value))
         return self.value - (self.kind == "gain")

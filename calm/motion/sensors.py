@@ -163,7 +163,7 @@ _STANDARD = (
 
 
 def read_sea_level(path: Path) -> tuple[NDArray[np.datetime64], Floats]:
-    """Read sea-surface heights above a datum; return increasing times and heights [m]."""
+    """Read increasing times, and heights of the sea surface above a datum [m]."""
     if path.is_file() and not cf_files.holds_arrays(path):
         table = read_time_columns(path, ("length",), "level[m]")
         if len(table.names) != 1:

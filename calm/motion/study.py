@@ -229,7 +229,7 @@ def judged(
 
 
 def knockdown(used: MooringMeasurements) -> Floats:
-    """Return the knockdown (n,) of the highest sensor with a pressure, from its least depth [m]."""
+    """Return the depth (n,) of the highest sensor with a pressure, minus its least depth [m]."""
     down = np.full(len(used.time), np.nan)
     for j in range(len(used.label)):
         depth = used.depth[:, j]
@@ -278,7 +278,7 @@ def cross_validated(
     tell: Callable[[str], None],
     workers: int | None = None,
 ) -> list[HeldOut]:
-    """Estimate the depth of each sensor from the others, and return the errors.
+    """Return the errors of the depth of each sensor, estimated without this sensor.
 
     Each sensor is withheld in turn, in addition to the sensors in `hidden`.
     """
