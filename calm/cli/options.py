@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 CatalogFiles = Annotated[
     list[Path] | None,
     Parameter(
-        help="Additional catalogue file; its components override those of the same id. Repeatable."
+        help="Additional catalogue file; its components override those with the same id. "
+        "Repeatable."
     ),
 ]
 MooringPath = Annotated[Path, Parameter(help="Mooring file.")]

@@ -65,9 +65,10 @@ def read_oceanarray(path: Path, options: model.ImportOptions) -> model.ImportedD
         reading.refuse((), "needs `waterdepth`")
     if not line:
         message = (
-            f"lists {len(beside)} instruments but no line; list floats, releases and anchor under"
+            f"lists {len(beside)} instruments but no line; list all parts of the line, including "
+            "floats, releases and anchor, under `inline`, each with `hab` or `length` and a name "
+            "in `label`"
         )
-        message += " `inline`, each with `hab` or `length` and a name in `label`"
         reading.refuse((), message)
     if len(line) + len(beside) > model.MOST_PIECES:
         reading.refuse((), f"has more than {model.MOST_PIECES} pieces")
@@ -210,7 +211,7 @@ class _Reading:
 
     def _entry(self, item: Any, place: _Location) -> _Entry | None:
         if not isinstance(item, dict):
-            self.refuse(place, "an item with keys is needed")
+            self.refuse(place, "a list item must have keys, such as `label`")
             return None
         words = [str(item[name]).strip() for name in _NAMES if item.get(name)]
         if not words:
@@ -358,12 +359,15 @@ def _strung(line: list[_Entry], parts: _Parts, design: model.ImportedDesign) -> 
                     add(piece, nominal[-1], gap)
             elif roped and abs(gap) > max(_OFF * roped, _ROUNDED):
                 message = (
-                    f"the lines below it are {roped:.6g} m long, but its height requires "
-                    f"{roped + gap:.6g} m"
+                    f"the lines below this piece are {roped:.6g} m long, but the height of the "
+                    f"piece requires {roped + gap:.6g} m"
                 )
                 design.guessed.append(model.Remark(entry.label, message))
             elif gap < -_CLOSE:
-                message = f"overlaps the piece below by {-gap:.3g} m and is moved to its top"
+                message = (
+                    f"overlaps the piece below by {-gap:.3g} m, and is moved up to the top of that "
+                    "piece"
+                )
                 design.guessed.append(model.Remark(entry.label, message))
                 lower = nominal[-1]
             at, below, roped = lower, f"`{entry.label}`", 0.0

@@ -103,7 +103,8 @@ class Cable(Flexible):
         "true for a wire rope that does not rotate under load", True
     )
     elongation: Elongation | None = optional(
-        "rows of load divided by breaking load, and strain, e.g. [[0.1, 0.03], [0.3, 0.08]]",
+        "pairs of load and strain, with the load as a fraction of the breaking load, "
+        "e.g. [[0.1, 0.03], [0.3, 0.08]]",
         [[0.05, 0.05], [0.1, 0.08], [0.2, 0.12]],
     )
     dynamic_stiffness: definition.PositiveForce = optional(
@@ -111,7 +112,10 @@ class Cable(Flexible):
     )
     permanent_elongation: Annotated[
         float | None, QuantityField("number", at_least=0, at_most=1)
-    ] = optional("lasting strain of a rope after its first loading, added at every tension", "4 %")
+    ] = optional(
+        "permanent strain of a rope after its first loading, added to every strain in `elongation`",
+        "4 %",
+    )
 
     @property
     def net_buoyancy(self) -> float:
@@ -413,6 +417,6 @@ def odd_overrides(
     fibre = fibre_of(defined.material)
     if fibre is not None and fibre_of(component.material) is None:
         yield (
-            f"`material: {component.material}` replaces the {fibre.name} of {use}, which is no "
-            "longer checked as a fibre rope"
+            f"`material: {component.material}` replaces the {fibre.name} of {use}; the part is "
+            "no longer checked as a fibre rope"
         )

@@ -221,8 +221,9 @@ class EstimatedFigure(Model):
         "lower bound in waves, if it is less than `low`", "8 kN"
     )
     quality: Literal["high", "medium", "low"] | None = optional(
-        "quality of the source for this item: high, published by its manufacturer; medium, "
-        "an owner's list or use at that depth; low, a similar item, or derived",
+        "how well the source applies to this item: high if its manufacturer published the values; "
+        "medium for an owner's list, or for use at that depth; low for a similar item, or for a "
+        "derived value",
         "low",
     )
     source: Text = described("source of the figures", "the chain above it")
@@ -308,7 +309,7 @@ class Definition(Model):
     searched: tuple[str, ...] | None = optional(
         "keys for which no source was found", ["breaking_load"]
     )
-    prefer: Text | None = optional("id of a better documented entry for the same product", "sbe37")
+    prefer: Text | None = optional("id of a better-documented entry for the same product", "sbe37")
     date: Text | None = optional("day, e.g. 2026-11-20", "2026-11-20")
     items: Annotated[int | None, Field(ge=1)] = optional(
         "number of equal items in the component, each with its own serial number, such as two "

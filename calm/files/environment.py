@@ -154,7 +154,7 @@ class UniformCurrent(Model):
 
     speed: Annotated[float, _SPEED] = described("speed of the water", "0.5 m/s")
     toward: water.Toward = described(
-        "direction towards which it flows or moves, clockwise from north, e.g. 90 deg", "90 deg"
+        "direction towards which the water flows, clockwise from north, e.g. 90 deg", "90 deg"
     )
     w: Annotated[float, QuantityField("speed")] = described(
         "vertical speed, positive up", "0.01 m/s", default=0.0
@@ -238,7 +238,7 @@ class EnvironmentKeys(TowEnvironmentKeys):
     )
     depth: Annotated[float, _WATER_DEPTH] = described("water depth, e.g. 1100 m", "1100 m")
     maximum_speed: Annotated[float, QuantityField("speed", above=0)] = described(
-        "speed above which a current is an error", "3 m/s", default=_MAXIMUM_SPEED
+        "current speed above which the file is rejected", "3 m/s", default=_MAXIMUM_SPEED
     )
     depth_range: Annotated[_Levels | None, BeforeValidator(_two_depths)] = optional(
         "water depth at low and at high water, e.g. [98 m, 104 m]", ["98 m", "104 m"]
@@ -387,7 +387,7 @@ def _seabed(
             if not 0.5 < grid.depth / depth < 2.0:
                 notices.append(
                     f"The seabed of {given.file} is {grid.depth:.4g} m deep at the position of the "
-                    f"mooring, where `depth` is {depth:.4g} m: check the unit and the position."
+                    f"mooring, but `depth` is {depth:.4g} m: check the unit and the position."
                 )
             return grid
         except InputError as error:

@@ -97,7 +97,7 @@ class ClampKeys(Equipment):
     use: str = described("id of a component in the catalogue or in `components`", "sbe37")
     label: Label = ""
     at: Annotated[float, definition.LENGTH] = described(
-        "distance from the top of the piece, unstretched", "20 m"
+        "unstretched distance from the top of the piece", "20 m"
     )
 
 

@@ -29,8 +29,9 @@ ONE_LEG_ONLY = (
     "drop, make a file of its most loaded leg alone"
 )
 NET_SURE = (
-    "single lines; for the effect of drag, buoyancy or current on a net, use `calm run --explain`, "
-    "or solve the net with other values, in a copy of its file or by `with_` in Python"
+    "single lines; to see the effect of drag, buoyancy or current on a net, use `calm run "
+    "--explain`, or change the values in a copy of its file, or with `with_` in Python, and solve "
+    "the net again"
 )
 
 _Offset = Annotated[float, QuantityField("length")]
@@ -57,8 +58,8 @@ _At = Annotated[
     tuple[_Offset, _Offset],
     BeforeValidator(_at_given, json_schema_input_type=tuple[Text, Text]),
     Field(
-        description="metres east and north of the origin, or a latitude and a longitude, the "
-        "origin being the `position` of the file",
+        description="metres east and north of the origin, or a latitude and a longitude; the "
+        "origin is the `position` of the file",
         examples=[["30 m", "0 m"], ["57 28.84 N", "3 12.10 W"]],
     ),
 ]
@@ -124,7 +125,7 @@ class LegKeys(Model):
     )
     bottom: _End | None = Field(
         default=None,
-        description="connection of its lower end; by default the anchor, if that is the last item",
+        description="connection of its lower end; by default the anchor, if the last item is one",
         examples=[{"join": "A"}, {"anchor": {"at": ["30 m", "0 m"]}}, "free"],
     )
 

@@ -166,8 +166,8 @@ class LineReader:
             length = self._quantity(item, "length", POSITIVE_LENGTH, need) or math.nan
         if "length_at" in item.data and not isinstance(component, Flexible):
             message = (
-                "`length_at` is for cables and chains; the length of this piece is that of "
-                "its definition"
+                "`length_at` is for cables and chains; this piece has the length given in its "
+                "definition"
             )
             item.refuse(("length_at",), message, key=True)
         elif "length" in item.data and "length_at" in item.data:
@@ -320,7 +320,7 @@ class LineReader:
             wanted = f"{total * count} number{'s' * (total * count != 1)}"
             message = f"`serial` must have {wanted} for {named}, not {len(numbers)}"
             if not own:
-                message = "`serial`: no part is an instrument, a release or a float"
+                message = "`serial`: this item contains no instrument, release or float"
             item.refuse(("serial",), message)
             return pieces
         mine = {

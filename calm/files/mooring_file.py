@@ -59,14 +59,17 @@ class Solver(Model):
         "tolerance of the anchor's depth, as a share of the water depth", 1e-07, default=1e-7
     )
     drag: Literal["constant", "reynolds"] = described(
-        "constant coefficients, or by Reynolds number for parts with `surface: smooth`",
+        "drag coefficients: constant, or a function of the Reynolds number for parts with "
+        "`surface: smooth`",
         "reynolds",
         default="constant",
     )
     friction: Literal["berteaux", "hoerner", "constant"] = described(
         "law of friction along cables", "berteaux", default="berteaux"
     )
-    strumming: Strumming = optional("increase of the Cn of cables by vibration", {"factor": 1.5})
+    strumming: Strumming = optional(
+        "increase of the Cn of cables due to vibration", {"factor": 1.5}
+    )
     buoy_drag: Literal["immersed", "full"] = described(
         "drag of a surface float: at its draft, or fully immersed", "immersed", default="immersed"
     )

@@ -321,9 +321,8 @@ def _check_slides(
         if here.slope >= most:
             complaints.append(
                 f"with a friction coefficient of {math.tan(math.radians(most)):g} the anchor "
-                "slides by its own "
-                f"weight on a seabed that slopes by {here.slope:.4g}°; it holds on slopes of less "
-                f"than {most:.3g}°"
+                f"slides under its own weight on a seabed that slopes by {here.slope:.4g}°; it "
+                f"holds on slopes of less than {most:.3g}°"
             )
         if place is not None and place.depth is not None:
             pass

@@ -1,4 +1,4 @@
-"""Solver key `strumming:`: increase of the drag coefficient Cn of cables by vibration.
+"""Solver key `strumming:`: increase of the drag coefficient Cn of cables due to vibration.
 
 ===================================== ==========================================
 written                               read as

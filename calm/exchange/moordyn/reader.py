@@ -150,9 +150,11 @@ def read_moordyn(path: Path) -> model.ImportedDesign:
     water = model.ImportedWater(depth, density, gravity, current)
     design = model.ImportedDesign("MoorDyn", path.stem, [], water, notes=[_NOTE])
     if kind not in ("0", "none") and not current:
-        lacks = f"without {_CURRENTS} in its folder" if kind in _STEADY else "which vary in time"
+        lacks = (
+            f"but {_CURRENTS} is missing" if kind in _STEADY else "for currents that vary in time"
+        )
         design.dropped.append(
-            model.Remark("current", f"`Currents` {kind}, {lacks}; still water is assumed")
+            model.Remark("current", f"`Currents` is {kind}, {lacks}; still water is assumed")
         )
     if options.get("wavekin", "0") not in ("0", "none"):
         design.dropped.append(model.Remark("waves", f"`WaveKin` {options['wavekin']}"))

@@ -138,7 +138,7 @@ def write_moordyn(exported: ExportedDesign) -> Exported:
     if first.tow is not None:
         raise UsageError("tows cannot be written for MoorDyn, only moorings")
     system = _System(first.mean_density, first.gravity)
-    lost = ["joints between adjacent rigid pieces, which become one stiff length"]
+    lost = ["joints between adjacent rigid pieces: the pieces become one stiff length"]
     for design in lines:
         _lay_line(system, design)
     if any(first.wind):

@@ -78,11 +78,12 @@ def _check_lift(row: ListRow, kind: str, across: float, length: float) -> None:
     if lift <= most:
         return
     kilograms = (
-        f"lifts {lift / KILOGRAM_FORCE:.4g} kg but displaces only {most / KILOGRAM_FORCE:.4g} kg"
+        f"displaces only {most / KILOGRAM_FORCE:.4g} kg of water, so it cannot lift "
+        f"{lift / KILOGRAM_FORCE:.4g} kg"
     )
     if row.count > 1 and lift <= row.count * most:
         row.refuse(
-            f"a piece {kilograms}; if the value is for all {row.count}, name the column `total`"
+            f"each piece {kilograms}; if the value is for all {row.count}, name the column `total`"
         )
     else:
         row.guesses["buoyancy"] = f"as in the list, although the piece {kilograms}"

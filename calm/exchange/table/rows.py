@@ -180,7 +180,9 @@ def _row(cells: list[str], row: ListRow, known: dict[str, ListColumn], decimal: 
             several = _METRES.search(f"{column.heading} {found.rest}")
             if several and not row.is_line:
                 figure *= int(several[1])
-                row.guesses[what] = "read as the value of the whole piece, because it is not a line"
+                row.guesses[what] = (
+                    "read as the value of the whole piece, because the piece is not a line"
+                )
         row.figures[what] = figure
         if found.tidied:
             row.guesses[what] = f"`{cell}` read as {found.value:g} {found.rest}".rstrip()

@@ -87,7 +87,7 @@ class Draft:
             yaml_document.compose("", self.text)
         except InputError as error:
             return error.problems
-        raise AssertionError("a text that can be read has nodes")
+        raise AssertionError("readable YAML text without nodes")
 
     @cached_property
     def items(self) -> tuple[LineItem, ...]:
