@@ -34,8 +34,8 @@ class RuleText:
     has_ratio: bool = True
 
 
-_WAVES = "waves are checked for an environment, by `calm check`"
-_ONCE = "checked once for a mooring, by `calm check`"
+_WAVES = "`calm check` checks the waves of each environment"
+_ONCE = "`calm check` checks this once for each mooring"
 
 RULES = {
     "equilibrium": RuleText("Equilibrium", "",
@@ -45,11 +45,12 @@ RULES = {
     "current": RuleText("Current", "speed",
         "the strongest current of all environments, and the range of levels in each profile",
         "a warning below 0.2 m/s, below 0.9 times the strongest current in the record used for an "
-        "environment, below 1/50 of the strongest current of another environment, or if the levels "
-        "leave more than 25 m and a tenth of the depth uncovered at the top or at the bottom",
+        "environment, below 1/50 of the strongest current of another environment, or if the gap "
+        "between the levels and the surface, or between the levels and the seabed, exceeds both "
+        "25 m and a tenth of the depth",
         "DNV-RP-C205: wind drives a surface current of 0.015 to 0.03 times its speed, up to 0.2 "
         "m/s at 7 m/s",
-        "the profiles of a record are the current"),
+        "in a batch, the record supplies the currents"),
     "drag-coefficient": RuleText("Drag coefficient", "",
         "drag of spheres and cylinders in a flow with a Reynolds number above 2e5, or beyond "
         "the curve of "
@@ -60,27 +61,28 @@ RULES = {
         "falls",
         "the profiles of a record are solved with one law of drag"),
     "environment": RuleText("Environment", "",
-        "possible but unusual values of an environment: directions that look like radians, a level "
-        "opposite to both its neighbours, a current that increases down to the seabed or exceeds "
-        "any current of deep water, a density that no sea has, tides of more than 20 m, wind of "
-        "more than 75 m/s; levels of a storm weaker than half of the ordinary current; no `wind` "
-        "although a surface float has a `wind_area`",
+        "possible but unusual values of an environment: directions that look like radians; a "
+        "current opposite to the currents at the levels above and below; a current that increases "
+        "down to the seabed, or is stronger than any current measured in deep water; a density not "
+        "found in any sea; a tidal range of more than 20 m; wind of more than 75 m/s; at some "
+        "levels, a storm current of less than half the ordinary current; no `wind` although a "
+        "surface float has a `wind_area`",
         "a warning",
         "CALM's own limits, from ranges found at sea and common typing errors",
-        "environments are compared with each other, by `calm check`"),
+        "`calm check` compares the environments with each other"),
     "missing": RuleText("Missing values", "",
-        "values that rules need but a component lacks; one finding for each component id and value "
-        "lists the rules and the pieces concerned",
+        "values that rules need but a component lacks; each finding is for one value of one "
+        "component id, and lists the rules and pieces concerned",
         "unknown",
         "The sources of the rules that need the value",
         _ONCE),
     "strength": RuleText("Strength", "load",
         "maximum tension of every piece; the top piece and the anchor are checked only if they "
         "have a load limit",
-        "the smaller of the working load and the breaking load divided by `safety_factor` (3 for "
-        "steel, 5 for synthetics, 5 for all pieces of a surface mooring); only the breaking "
-        "load of a "
-        "synthetic rope counts if it is known, since rope tables give working loads for lifting",
+        "the working load, or the breaking load divided by `safety_factor` (3 for steel, 5 for "
+        "synthetics, 5 for all pieces of a surface mooring) if this is smaller; for a synthetic "
+        "rope with a known breaking load, only the breaking load counts, since rope tables give "
+        "working loads for lifting",
         "UFC 4-159-03, table 3-7: a factor of 3 for chain and wire; oceanographic practice: a "
         "third "
         "to a fifth of the breaking load",
@@ -91,9 +93,8 @@ RULES = {
         "Static load and opening load given by the manufacturer",
         figures=("working_load", "opening_load")),
     "clamp-grip": RuleText("Clamp grip", "load",
-        "load on every clamp from its weight in water and its drag, in the current, the anchor "
-        "drop "
-        "and the ascent",
+        "load on every clamp from its weight in water and its drag: in the current, during the "
+        "anchor drop and during the ascent",
         "`grip` of the clamp, or its `breaking_load`; not judged if neither is given",
         "Values given by the manufacturer of the clamp",
         "the result does not contain the current at each clamp", figures=("grip",)),
@@ -126,7 +127,7 @@ RULES = {
         "Rating given by the manufacturer, less a margin for a stronger current than expected",
         figures=("depth_rating",)),
     "top-depth": RuleText("Top depth", "depth",
-        "minimum depth of the top of a subsurface line, also at low water",
+        "minimum depth of the top of a subsurface line, even at low water",
         "a failure if the top is shallower than `minimum_top_depth`; without this key, a warning "
         "if it is shallower than 10 m",
         "CALM's own limit: the top stays clear of waves, hulls and nets"),
@@ -147,7 +148,8 @@ RULES = {
         "published stiffnesses; a warning if a rope is measured under more than its working load "
         "(a fifth of its breaking load, if the working load is unknown)",
         "CALM's own limits: the error of a sounding is also about 2 %; manufacturers measure ropes "
-        "under a small load"),
+        "under a small load",
+        "`calm check` checks this in each environment"),
     "fish-bite": RuleText("Fish bite", "depth",
         "minimum depth of every synthetic rope, in more than 200 m of water and less than 60° from "
         "the equator",
@@ -187,8 +189,8 @@ RULES = {
         "above the release"),
     "wave-strength": RuleText("Strength in waves", "load",
         "most probable maximum tension of every piece in 3 h of the sea state in `waves:`",
-        "the smaller of the working load and the breaking load divided by `waves_safety_factor` "
-        "(1.67), with the loads used for `strength`; unknown for a surface mooring without "
+        "the working load, or the breaking load divided by `waves_safety_factor` (1.67) if this is "
+        "smaller, with the loads used for `strength`; unknown for a surface mooring without "
         "`waves:`",
         "API RP 2SK: a safety factor of 1.67 for the breaking strength of the intact mooring, with "
         "tensions from a dynamic analysis",
@@ -302,8 +304,8 @@ RULES = {
         _ONCE),
     "launch-strength": RuleText("Strength during launch", "load",
         "maximum tension of every piece during the anchor drop",
-        "the smaller of the working load times `launch_working_factor` (1) and the breaking load "
-        "divided by `launch_safety_factor` (2), with the loads used for `strength`",
+        "the working load times `launch_working_factor` (1), or the breaking load divided by "
+        "`launch_safety_factor` (2) if this is smaller, with the loads used for `strength`",
         "Anchor-last launch at terminal speed (URI GSO program); the limits are the working load "
         "and half the breaking load",
         _ONCE, figures=("working_load", "breaking_load")),

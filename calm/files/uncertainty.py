@@ -21,7 +21,7 @@ _TOO_WIDE = (
 
 @dataclass(frozen=True)
 class Spread:
-    """Uncertainty of a value, relative to the value; for an angle, it is in degrees.
+    """Uncertainty of a value, relative to the value; uncertainties of angles are in degrees.
 
     Attributes
     ----------
@@ -35,7 +35,7 @@ class Spread:
 
 @dataclass(frozen=True)
 class SpreadOf:
-    """Annotation of a key of `uncertainty:` with the values that are allowed.
+    """Annotation that gives a key of `uncertainty:` its allowed values.
 
     Attributes
     ----------

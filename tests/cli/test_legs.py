@@ -537,7 +537,7 @@ def test_an_anchor_that_slides_by_itself_is_a_mistake(tmp_path: Path) -> None:
     """The angle of friction of 0.6 is 31 degrees."""
     text = SLOPE.replace("slope: 10 deg", "slope: 32 deg")
     with pytest.raises(
-        InputError, match=r"slides by its own weight .* it holds on slopes of less than 31°"
+        InputError, match=r"slides under its own weight .* it holds on slopes of less than 31°"
     ):
         load(tmp_path / "slope.yaml", text=text)
 
@@ -855,7 +855,7 @@ def test_an_export_says_that_its_seabed_is_level(
     file.write_text(SLOPE)
     assert run("export", file, "--to", "moordyn", "-o", tmp_path / "slope.txt") == 0
     told = capsys.readouterr().err
-    assert "not exported: the slope of the seabed: it is level" in told
+    assert "not exported: the slope of the seabed: the exported seabed is level" in told
     depths = [anchor.depth for anchor in load(file).solve().anchors]
     written = (tmp_path / "slope.txt").read_text()
     deepest = next(line for line in written.splitlines() if "WtrDpth" in line)
