@@ -196,8 +196,8 @@ def learn_currents(
         if not np.isfinite(at.depth).any():
             raise UsageError(
                 "--pressures: no equilibrium of the line fits the pressures of "
-                f"{', '.join(part.label)}. Check the labels of the sensors, the lengths of the line "
-                "and the water depth"
+                f"{', '.join(part.label)}. Check the labels of the sensors, the lengths of the "
+                "line and the water depth"
             )
         found = fit.posterior(at)
         tried = logs + reach[:, None] * np.clip(found.logs - logs, -LONGEST, LONGEST)
