@@ -44,11 +44,12 @@ def check(
     """Check designs: solve each mooring in each environment and apply the design
     rules.
 
-    Each mooring is solved as given, in still water, with strumming cables and, if
-    its file requires it, at high and low water and with biofouling. CALM also
+    Each mooring is solved as given, in still water, and with strumming cables. If
+    the file has a tidal range, the mooring is also solved at high and low water; if
+    the file has biofouling, the mooring is also solved with biofouling. CALM also
     simulates an anchor-last deployment, the release, and a break at each
-    connection. The exit code is 1 if a rule fails or lacks a value, 3 if a
-    mooring has no equilibrium, and 0 otherwise.
+    connection. The exit code is 1 if a check fails or if a value that it needs is
+    missing, 3 if a mooring has no equilibrium, and 0 otherwise.
 
     Parameters
     ----------
@@ -71,9 +72,9 @@ def check(
     all_findings
         Write all findings, for every piece and situation, to the JSON and checks.csv.
     missing
-        Instead of the findings, print a block of YAML to fill in. It lists the missing values of
-        each component, with the rules that need them, and, as comments, estimated values and
-        masses in air.
+        Instead of the findings, print a YAML block in which you can fill in the missing values. It
+        lists, for each component, the missing values and the rules that need them. Estimated
+        values and masses in air are given as comments.
     output
         Write the block of --missing to this file.
     allow_unknown

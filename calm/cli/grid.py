@@ -30,12 +30,12 @@ def grid(
     """Map temperature, salinity and velocity from moving instruments onto fixed
     levels.
 
-    The method is a Gaussian process over depth and time, whose scales are
-    estimated from the record. Each value has a standard deviation, which includes
-    the sensor error, the depth error times the local gradient, and the gap
-    between sensors. Each value has a flag: 8 if it lies between sensors at that
-    time, 3 if it lies beyond them or the data constrain it poorly, 9 if there is
-    no value.
+    The method is a Gaussian process over depth and time. Its scales are estimated
+    from the record. Each value has a standard deviation, which includes the sensor
+    error, the depth error times the local gradient, and the error of interpolation
+    between sensors. Each value has a flag: 8 if sensors were both above and below
+    its level, 3 if they were not or if the data constrain the value poorly, 9 if
+    there is no value.
 
     Parameters
     ----------

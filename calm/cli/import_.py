@@ -50,8 +50,8 @@ def import_(
     strict
         Reject files with missing values that CALM would have to guess.
     define
-        Set a macro of WHOI Cable, as NAME=VALUE, or the catalogue id for an oceanarray name, as
-        "NAME=ID". Repeatable.
+        For WHOI Cable files: set a macro, NAME=VALUE. For oceanarray files: set the catalogue id of
+        a name, "NAME=ID". Repeatable.
     environment
         Use this environment file instead of the environment in the imported file.
     onto

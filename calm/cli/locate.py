@@ -34,11 +34,12 @@ def locate(
     """Locate an anchor from ship-to-release acoustic ranges.
 
     Outliers are reported, and rejected if enough ranges remain. The result is the
-    position with its 95 % ellipse and the depth with its interval; CALM warns if
-    the ship's positions constrain them poorly. If two positions fit, both are
-    reported, with weights from their distances to the planned position, compared
-    with the usual fallback of an anchor. The exit code is 1 if both remain
-    possible. Acoustic rays are assumed to be straight.
+    position with its 95 % ellipse and the depth with its 95 % interval; CALM warns if
+    the ship's positions constrain either of these poorly. If two positions fit,
+    both are reported. CALM chooses the more likely one by its residuals and its
+    distance from the planned position; a distance as large as the usual fallback
+    of an anchor is not unlikely. If CALM cannot choose, the exit code is 1.
+    Acoustic rays are assumed to be straight.
 
     Parameters
     ----------
@@ -61,8 +62,8 @@ def locate(
     json
         Write the position as JSON (- for standard output).
     near
-        Planned latitude and longitude of the anchor, used to weight two possible positions; by
-        default, the planned position in the file of --update.
+        Planned latitude and longitude of the anchor, used to choose between two positions that
+        fit; by default, the planned position in the file of --update.
     hemisphere
         Hemispheres of positions that have neither letter nor sign, such as S,W.
     update

@@ -30,12 +30,12 @@ def waves(
     report: Path | None = None,
     units: options.Units = None,
 ) -> ExitCode:
-    """Estimate tensions and motions of a mooring in waves, about its equilibrium.
+    """Estimate the tensions and motions of a mooring in waves.
 
     The model is linear: it computes small motions about the shape in the mean
-    current, with drag linearised for equal dissipation. A linear model is not
-    valid if a piece goes slack; the status is then slack-in-waves, and the exit
-    code is 3.
+    current. The linear drag dissipates the same power as the quadratic drag. A
+    linear model is not valid if a piece goes slack; the status is then
+    slack-in-waves, and the exit code is 3.
     Without --hs, --scatter or a file for --spectrum, CALM uses the sea states
     under `waves:` in the environment, which may also specify a swell and a
     peakedness.

@@ -80,8 +80,9 @@ def checks_table(signed: SignedMooring, findings: Sequence[Finding]) -> Table:
     def of_items(state: State) -> str:
         return f" ({items[state]} open item{'s' * (items[state] != 1)})" if items[state] else ""
 
+    named = {State.PASS: "passed", State.WARN: "warned", State.FAIL: "failed"}
     counted = ", ".join(
-        f"{count} {state.value.replace('-', ' ')}{of_items(state)}"
+        f"{count} {named.get(state, state.value.replace('-', ' '))}{of_items(state)}"
         for state, count in counts.items()
         if count
     )
@@ -100,11 +101,12 @@ def checks_table(signed: SignedMooring, findings: Sequence[Finding]) -> Table:
             RULES[row[0].rule].title, f"({row[1]})" if row[1] > 1 else "", goes_on=True), 1.2),
         *blocks.of_first(*FIGURE_FIELDS, words("Where, case", where_text, 0.9)),
         words("Basis of the limit; remedy", basis, 2.2),
-        note=f"These {len(rows)} rows summarise {len(findings)} findings ({counted}); the files of "
-        "this report list them.",
+        note=f"These {len(rows)} rows summarise {len(findings)} findings: {counted}. With "
+        "--all-findings, calm check lists all of them in checks.csv and report.json.",
         aside=(
-            "Each rule is shown by its finding with the highest utilisation, then any more severe "
-            "ones. The number of pieces is in brackets."
+            "For each rule, the table shows the finding with the highest utilisation. If another "
+            "finding is more severe, it follows in a second row. The number of pieces is in "
+            "brackets."
         ),
     )  # fmt: skip
 
@@ -168,7 +170,7 @@ def _launch(assessment: Assessment) -> Table:
     rows = [
         ("Touchdown speed" + drag, say("speed", launch.fall_speed),
          _limit(assessment, "launch-speed")),
-        ("with twice and half the drag",
+        ("If the drag is doubled or halved",
          f"{slow} to {fast} {QUANTITIES['speed'].display_unit}", ""),
         ("Anchor tension in descent", LOAD.say(launch.anchor_tension), ""),
         (f"Largest tension, {label}", LOAD.say(float(np.nanmax(tension))), _limit_of(loaded)),
@@ -261,8 +263,8 @@ def _breaks(assessment: Assessment) -> Table:
         note += f"Sections with a larger margin omitted: {left}. "
     if unjudged:
         note += (
-            f"Breaks not judged: {unjudged}. They are within the lowest floats, or between these "
-            "and the release, and would leave the release on the seabed in any design."
+            f"Breaks not judged: {unjudged}. A break within the lowest floats, or between the "
+            "lowest floats and the release, leaves the release on the seabed in any design."
         )
     return table_of(
         "Breaks and losses",
@@ -400,7 +402,7 @@ def _limits(limits: Iterable[LimitKey]) -> Table:
         words("Limit", lambda key: Cell(called(key), strong=own(key))),
         number("Value", lambda key: Cell(_value(key, key.value), strong=own(key))),
         words("Source", source, 1.6),
-        aside="limits set by the design are in bold",
+        aside="the limits that the design sets are bold",
         ruled=False,
     )
 

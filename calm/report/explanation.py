@@ -33,11 +33,14 @@ SMALLEST_SHARE = 0.005
 """Fraction of a total below which drag forces are summed in one row."""
 
 _SHARES = (
-    "Shares: all drag forces are increased together from zero to their full value, and the "
-    "share of each force is the change that its own increase causes. Drag is the horizontal force "
-    "of the water."
+    "Shares: CALM increases all drag forces together from zero to their full value. The share of "
+    "a drag force is the part of the change that the increase of this force causes. Drag is the "
+    "horizontal force of the water."
 )
-_CHANGES = "Buoyancy is scaled for all buoyant parts and drag for all parts; lengths are unchanged."
+_CHANGES = (
+    "A change of buoyancy applies to all buoyant parts, and a change of drag to all parts; lengths "
+    "are unchanged."
+)
 
 
 def line_facts(result: Result) -> tuple[tuple[str, str], ...]:

@@ -107,11 +107,12 @@ def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
         number(f"Rise {unit}", lambda group: _force(
             max((one.rise_tension or 0.0 for one in group), default=None))),
         note=(
-            "Capacity is the smaller of the working load and the breaking load over its safety "
-            "factor; the launch columns use the factors for the launch. – not judged, ? no "
-            "published load, ≈ estimated, ○ accepted. The code of the load case follows the "
-            "tension. Equal pieces share a row: tension, capacity and use are those of the piece "
-            "with the highest use; minimum, tilt and rise cover all of them."
+            "Capacity is either the working load or the breaking load divided by a safety factor, "
+            "whichever is smaller; the launch columns use the factors for the launch. – not "
+            "judged, ? no published load, ≈ estimated, ○ accepted. Each tension is followed by the "
+            "code of its load case. Equal pieces share a row, which gives the tension, capacity "
+            "and use of the piece with the highest use, the smallest minimum, and the largest tilt "
+            "and rise."
         ),
         aside="envelope of all load cases: largest tension and tilt, minimum tension",
         ruled=False,
@@ -191,7 +192,7 @@ def _hardware_table(loads: Sequence[PieceEnvelope]) -> Table:
         number(f"Capa-\ncity {unit}", lambda row: capacity_text(row[0].standing)),
         number("Use %", lambda row: _use(row[0].standing)),
         *(launch if launched else ()),
-        aside="one row per type, for the governing pieces",
+        aside="one row per type, with the most used piece",
         ruled=False,
     )
 

@@ -260,7 +260,7 @@ def cases_table(signed: SignedMooring) -> Table:
         *(figure.field(lead[0]) for figure, lead in shown),
         note=note,
         ruled=False,
-        aside="governing values in bold, their components in the last row",
+        aside="governing values are bold; the last row names their components",
     )
     numbers = item_numbers(*signed.standing[0].results) if signed.standing else {}
 
@@ -309,8 +309,8 @@ def governing_table(signed: SignedMooring) -> Table:
         *check_fields(MOST_LABELS),
         note=note,
         ruled=False,
-        aside="Use is the utilisation, demand / capacity or required / available, rounded up. "
-        "The bars have a line at 100 % and are hatched above it.",
+        aside="Use is the demand divided by the capacity, or the required value divided by the "
+        "available value, rounded up. The bars have a line at 100 % and are hatched above it.",
     )
 
 
