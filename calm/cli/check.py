@@ -72,9 +72,9 @@ def check(
     all_findings
         Write all findings, for every piece and situation, to the JSON and checks.csv.
     missing
-        Instead of the findings, print a YAML block in which you can fill in the missing values. It
-        lists, for each component, the missing values and the rules that need them. Estimated
-        values and masses in air are given as comments.
+        Instead of the findings, print a YAML block in which you can fill in the missing values. The
+        block lists these values for each component, and the rules that need them. Estimated values
+        and masses in air are given as comments.
     output
         Write the block of --missing to this file.
     allow_unknown

@@ -34,12 +34,12 @@ def locate(
     """Locate an anchor from ship-to-release acoustic ranges.
 
     Outliers are reported, and rejected if enough ranges remain. The result is the
-    position with its 95 % ellipse and the depth with its 95 % interval; CALM warns if
-    the ship's positions constrain either of these poorly. If two positions fit,
-    both are reported. CALM chooses the more likely one by its residuals and its
-    distance from the planned position; a distance as large as the usual fallback
-    of an anchor is not unlikely. If CALM cannot choose, the exit code is 1.
-    Acoustic rays are assumed to be straight.
+    position with its 95 % ellipse and the depth with its 95 % interval. CALM warns
+    if the ship's positions constrain the result poorly. If two positions fit, both
+    are reported. CALM chooses the more likely one: its ranges fit better, or it is
+    closer to the planned position, allowing for the usual fallback of an anchor.
+    If CALM cannot choose, the exit code is 1. Acoustic rays are assumed to be
+    straight.
 
     Parameters
     ----------
