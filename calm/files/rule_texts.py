@@ -16,7 +16,7 @@ class RuleText:
     title : title for users
     quantity : name in `calm.quantities` of the values and limits; "" for a rule without values
     judges : description of the value that is checked
-    limit : sentences on the limit, and on the state of a finding beyond the limit
+    limit : sentences on the limit, and on the state of a finding beyond it
     source : source of the rule and of its default limit
     unseen : reason why the rule cannot check the profiles of a batch; "" if it can
     figures : component keys whose values the rule needs
@@ -74,7 +74,7 @@ RULES = {
         "values that rules need but a component lacks; for each component id and value, one "
         "finding lists the rules and the pieces concerned",
         "The state is unknown",
-        "The value is needed by the rules that the finding lists",
+        "The finding lists the rules that need the value",
         _ONCE),
     "strength": RuleText("Strength", "load",
         "maximum tension of every piece; the top piece and the anchor are checked only if they "
@@ -83,9 +83,8 @@ RULES = {
         "`safety_factor` (3 for steel, 5 for synthetics, 5 for all pieces of a surface mooring). "
         "For a synthetic rope with a known breaking load, only the breaking load counts, since "
         "rope tables give working loads for lifting",
-        "UFC 4-159-03, table 3-7, requires a factor of 3 for chain and wire; in oceanographic "
-        "practice, the load is at most a third to a fifth of the breaking load",
-        figures=("working_load", "breaking_load")),
+        "UFC 4-159-03, table 3-7, gives a factor of 3 for chain and wire; oceanographers use a "
+        "third to a fifth of the breaking load", figures=("working_load", "breaking_load")),
     "release-load": RuleText("Release load", "load",
         "maximum tension of every release, and the tension below the release when it opens",
         "The tension must not exceed the limit of the rule `strength`. When the release opens, "
@@ -139,8 +138,8 @@ RULES = {
         "of the planned depth. The difference is a failure if it also exceeds "
         "`planned_depth_limit` (10 %) of the planned depth. Parts without a planned depth are not "
         "checked",
-        "CALM's own limit: if the difference is large, the instrument measures at the wrong "
-        "depth, or a length or the water depth in the file is wrong",
+        "CALM's own limit: a large difference puts the instrument at a wrong depth, or is due to "
+        "a wrong length or water depth",
         _ONCE),
     "stretch": RuleText("Stretch", "length",
         "stretch of synthetic ropes without `stiffness` or `elongation`, and the load under which "
@@ -299,19 +298,18 @@ RULES = {
         "minimum net buoyancy of the section with the release, over all breaks and float losses "
         "that are considered (see below)",
         "The net buoyancy must be at least `backup_margin` (0.1) times the weight lifted, and at "
-        "least the drag at `minimum_rise_speed`. It is not judged for a single float that lifts "
-        "the whole line and is at most 50 m above the release. There is a warning for a surface "
-        "mooring without floats below its buoy",
+        "least the drag at `minimum_rise_speed`. There is a warning for a surface mooring without "
+        "floats below its buoy. A single float that lifts the whole line and is at most 50 m "
+        "above the release is not judged; this is CALM's own rule",
         "URI GSO mooring program: if any one link breaks, everything above the release still "
-        "floats; CALM itself sets the margin, and the 50 m up to which a single float is not "
-        "judged",
+        "floats; CALM itself sets the margin",
         _ONCE),
     "launch-strength": RuleText("Strength in the launch", "load",
         "maximum tension of every piece during the anchor drop",
         "The tension must not exceed the working load times `launch_working_factor` (1), nor the "
         "breaking load divided by `launch_safety_factor` (2); the loads are those of the rule "
         "`strength`",
-        "The URI GSO program computes an anchor-last launch at terminal speed; the limits are the "
+        "As in the URI GSO program, the anchor falls at terminal speed; the limits are the "
         "working load and half the breaking load",
         _ONCE, figures=("working_load", "breaking_load")),
     "launch-speed": RuleText("Speed at touchdown", "speed",

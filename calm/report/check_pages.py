@@ -101,8 +101,8 @@ def checks_table(signed: SignedMooring, findings: Sequence[Finding]) -> Table:
             RULES[row[0].rule].title, f"({row[1]})" if row[1] > 1 else "", goes_on=True), 1.2),
         *blocks.of_first(*FIGURE_FIELDS, words("Where, case", where_text, 0.9)),
         words("Basis of the limit; remedy", basis, 2.2),
-        note=f"These {len(rows)} rows summarise {len(findings)} findings: {counted}. With "
-        "--all-findings, calm check lists all of them in checks.csv and report.json.",
+        note=f"These {len(rows)} rows summarise {len(findings)} findings: {counted}. "
+        "The option --all-findings lists all of them in checks.csv.",
         aside=(
             "For each rule, the table shows the finding with the highest utilisation. If another "
             "finding is more severe, it follows in a second row. The number of pieces is in "

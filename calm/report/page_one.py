@@ -309,8 +309,8 @@ def governing_table(signed: SignedMooring) -> Table:
         *check_fields(MOST_LABELS),
         note=note,
         ruled=False,
-        aside="Use is the demand divided by the capacity, or the required value divided by the "
-        "available value, rounded up. The bars have a line at 100 % and are hatched above it.",
+        aside="Use is demand / capacity or, for a minimum, required / available; it is rounded up. "
+        "The bars have a line at 100 % and are hatched above it.",
     )
 
 
