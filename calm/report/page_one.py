@@ -309,8 +309,8 @@ def governing_table(signed: SignedMooring) -> Table:
         *check_fields(MOST_LABELS),
         note=note,
         ruled=False,
-        aside="Use is demand / capacity or, for a minimum, required / available; it is rounded up. "
-        "The bars have a line at 100 % and are hatched above it.",
+        aside="Use is demand / capacity or, for a minimum, required / available, rounded up. "
+        "Bars are hatched above the line at 100 %.",
     )
 
 
