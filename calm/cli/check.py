@@ -60,8 +60,9 @@ def check(
         Write the findings as JSON (- for standard output): the governing finding of each rule, all
         findings that do not pass, and those with a utilisation of at least one half.
     report
-        Write report.html, report.pdf, report.json, checks.csv and inventory.csv in this folder: at
-        least five pages for one mooring; for several moorings, a matrix and one page each.
+        Write report.html, report.pdf, report.json, checks.csv and inventory.csv in this folder. The
+        report of one mooring has at least five pages; the report of several moorings has a matrix
+        of all moorings and a page for each.
     page
         Page size of the report.
     full
@@ -70,7 +71,7 @@ def check(
         Mooring file of an earlier design, with which the report compares the mooring. Requires
         --report.
     all_findings
-        Write all findings, for every piece and situation, to the JSON and checks.csv.
+        Write all findings, for every piece and situation, to the JSON file and to checks.csv.
     missing
         Instead of the findings, print a YAML block in which you can fill in the missing values. The
         block lists these values for each component, and the rules that need them. Estimated values
@@ -80,8 +81,8 @@ def check(
     allow_unknown
         Ignore unknown findings in the exit code; the output stays the same.
     uncertainty
-        Report for each finding the probability of exceeding its limit, given the input
-        uncertainties under `uncertainty` in the file, and rank the designs by it.
+        Report for each finding the probability that the limit is exceeded, given the input
+        uncertainties under `uncertainty` in the file, and rank the designs by this probability.
     workers
         Number of processes; one per core by default.
 

@@ -55,10 +55,10 @@ def import_(
     environment
         Use this environment file instead of the environment in the imported file.
     onto
-        A mooring file. FILE is then a list of instruments with serial number, name, nominal depth
-        and clock offset (CSV, RODB's info.dat, oceanarray, or NetCDF). Its instruments are assigned
-        to the line of the mooring, and OUTPUT is a copy of the mooring file with the serial numbers
-        in `deployed:`.
+        A mooring file to whose line the instruments in FILE are assigned. FILE is then a list of
+        instruments with serial number, name, nominal depth and clock offset (CSV, RODB's info.dat,
+        oceanarray, or NetCDF), and OUTPUT is a copy of the mooring file with the serial numbers in
+        `deployed:`.
     columns
         Headings of the columns of a table, each as KEY=HEADING, such as name=Item,length=Len.
     sheet

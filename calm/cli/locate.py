@@ -57,8 +57,8 @@ def locate(
     above_seabed
         Height of the transponder (usually the release) above the seabed.
     plot
-        Draw the ranges as circles about the ship's positions, and the anchor position found, to
-        this .png, .svg or .pdf file.
+        Draw the anchor position, and the ranges as circles about the ship's positions, in this
+        .png, .svg or .pdf file.
     json
         Write the position as JSON (- for standard output).
     near

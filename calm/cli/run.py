@@ -50,8 +50,8 @@ def run(
 ) -> ExitCode:
     """Solve moorings, tows and nets of legs, and print the table of each line.
 
-    All files are read first. If any has mistakes, they are listed and nothing is
-    solved. Error messages go to standard error.
+    All files are read first. If a file has mistakes, all mistakes are listed and
+    nothing is solved. Error messages go to standard error.
 
     Parameters
     ----------
@@ -60,10 +60,10 @@ def run(
     output
         Write the result to this file, in the format of its suffix. Repeatable. All moorings are
         written to a single .json or .csv file. The .csv file has a row per component or, with
-        --speeds, a row per speed. In the other formats, each mooring gets its own file (for several
-        moorings, p.svg becomes p-FILE.svg): .svg and .png contain a drawing of the line, .html and
-        .pdf a report with table, drawings and inputs, and .nc NetCDF data with the variable names
-        of `calm batch`.
+        --speeds, a row per speed. In the other formats, each mooring gets its own file; for several
+        moorings, p.svg becomes p-FILE.svg. The formats .svg and .png give a drawing of the line,
+        .html and .pdf a report with table, drawings and inputs, and .nc a NetCDF file with the
+        variable names of `calm batch`.
     json
         Print the result as JSON instead of the table; several files give an array.
     speeds

@@ -46,8 +46,8 @@ def waves(
         Significant wave height, such as "5 m".
     tp
         Peak period, such as "8.4 s", which is about 1.41 times the mean zero-crossing
-        period Tz. For pierson-moskowitz the default is that of a fully developed sea;
-        ochi-hubble does not use it.
+        period Tz. For the spectrum pierson-moskowitz, the default is the peak period of
+        a fully developed sea; the spectrum ochi-hubble does not use a peak period.
     spectrum
         Wave spectrum: bretschneider, jonswap, pierson-moskowitz, ochi-hubble (swell and sea), or a
         file with a measured spectrum: CSV with frequency[Hz],density[m^2/Hz], or NetCDF.

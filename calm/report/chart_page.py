@@ -351,8 +351,8 @@ def answer_part(answer: ChartAnswer) -> ReportPart:
         notes.append("Each of these cables fits the input.")
     if any(min(each["phi_a"], each["phi_b"]) < 0.0 for each in figures):
         notes.append(
-            "A negative angle means that the cable dips below that end, or, if buoyant, rises "
-            "above it."
+            "If the angle at an end is negative, the cable dips below that end or, if buoyant, "
+            "rises above it."
         )
     return ReportPart(f"Uniform current, K = {answer.k:.6g}", (table, Note(tuple(notes))))
 

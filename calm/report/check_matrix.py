@@ -236,8 +236,9 @@ def mooring_page(signed: SignedMooring) -> Iterator[Block]:
                if one is reported[one.rule][0] else None),
         words("Remedy", lambda one: Cell(detail=without_asides(advice(one))), 1.5),
         aside=(
-            "Each rule is shown by its finding with the highest utilisation, then any more severe "
-            "ones. “Over 100 %” counts the findings in all environments."
+            "For each rule, the table shows the finding with the highest utilisation. If another "
+            "finding is more severe, it follows in a second row. “Over 100 %” counts the findings "
+            "in all environments."
         ),
         ruled=False,
     )  # fmt: skip

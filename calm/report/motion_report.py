@@ -103,7 +103,7 @@ def methods_text(study: MotionEstimate, series: Sequence[SensorSeries]) -> tuple
     down = down[np.isfinite(down)]
     wide = np.concatenate([one.spread[np.isfinite(one.spread)] for one in series])
     factors = "; ".join(
-        f"{TITLES[key]} {value:.2f} times that assumed (95 %: {low:.2f} to {high:.2f})"
+        f"{TITLES[key]} {value:.2f} times the assumed value (95 %: {low:.2f} to {high:.2f})"
         for key, (value, low, high) in study.factors.items()
     )
     sentences = [
