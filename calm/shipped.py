@@ -35,7 +35,7 @@ TEMPLATES: dict[Template, str] = {
     "tow": "towed body, with the wire cut for a required depth",
 }
 """Kinds of template moorings, with descriptions. No template accepts an unknown value, because this
-is a decision of the person who signs the design.
+decision belongs to the person who signs the design.
 """
 
 

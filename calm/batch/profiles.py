@@ -25,12 +25,12 @@ from calm.case.measure import clamps_of, components_of
 from calm.case.result_tables import MOORED_ENDS, Clamps, Columnar, Components
 from calm.files import Clamp, CurrentTable, Piece
 from calm.files.pieces import clamps_down
-from calm.physics.compiled import by_address, outcome
+from calm.physics.compiled import outcome
 from calm.physics.line import Floats, Integers, Line, Water
 from calm.records.given import as_file, is_record
 from calm.solve import Status
 from calm.solve.audit import referee_of
-from calm.solve.mooring import MORE_ROOM, SearchTask, run_search, search_of
+from calm.solve.mooring import MORE_ROOM
 from calm.solve.problem import MANY_ROOM, problem_of
 from calm.solve.solution import FOUND
 
@@ -374,7 +374,7 @@ class Batch:
         )  # fmt: skip
         # a profile without current is detected separately
         problem = problem._replace(limits=problem.limits._replace(at_rest=False))
-        search, referee = search_of(problem, True), referee_of(line, water, 0.0, True)
+        referee = referee_of(line, water, 0.0, True)
         found: Any = problem.starts
         if starts is not None:
             found[:] = starts
@@ -384,8 +384,7 @@ class Batch:
             may_lie=np.array([one.component.kind == "chain" for one in pieces], np.intp),
             depths=np.zeros((3, len(line.clamp_piece) + len(line.length))),
         )
-        find = by_address(run_search, SearchTask(search, referee))
-        given = (find, search, referee, arrays, starts is None, depth, *parts, rows, endings)
+        given = (problem, referee, arrays, starts is None, depth, *parts, rows, endings)
         outcome(solving.solve_rows, True, *given)
         return np.asarray(found)
 

@@ -223,12 +223,12 @@ class Labels:
             self.boxes.append(Bbox([np.subtract(place, half), np.add(place, half)]))
 
     def tick(self, x: float, y: float, angle: float, size: float, colour: str) -> None:
-        """Draw a tick at a point of a curve, to the right of the direction of the curve.
+        """Draw a tick at a point of a curve, to the right when facing along the curve.
 
         Parameters
         ----------
         angle : direction of the curve [rad]
-        size : length of the tick in points; if negative, the tick is drawn to the left of the curve
+        size : length of the tick in points; if negative, the tick is drawn to the left
         """
         place, right = self._place(x, y, angle)
         ends = np.array([place, place + right * size * self._points])

@@ -38,7 +38,7 @@ from calm.report.page_one import (
 )
 
 _OTHER_KIND = ("slack",)
-"""Rules omitted from the matrix, since their utilisation is no share of a strength or a range."""
+"""Rules omitted from the matrix: their utilisation is not a share of a strength or a range."""
 _MOST_ENVIRONMENTS = 12
 _NEAR = 0.9
 
@@ -81,7 +81,7 @@ class SummaryRow:
 
     @property
     def first_failure(self) -> tuple[str, str] | None:
-        """First environment in which the mooring fails, and text of the failure, or None."""
+        """First environment in which the mooring fails, and text of the failure; None if none."""
         cells = {**self.cells, "launch": self.handling} if self.handling else self.cells
         failed = (
             (name, cell.text) for name, cell in cells.items()

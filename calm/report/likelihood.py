@@ -17,7 +17,10 @@ _NOTE = (
 
 
 def likelihood_tables(named: Iterable[tuple[str, Sequence[Finding]]]) -> Iterator[blocks.Table]:
-    """Yield the table of the probabilities of each design, if any; the most critical is first."""
+    """Yield a table of the probabilities of exceeding limits, with the most critical design first.
+
+    No table is yielded if no design has any probability.
+    """
     designs = [(_likeliest(findings), name) for name, findings in named]
     designs.sort(key=lambda one: -(one[0][0].probability or 0.0) if one[0] else inf)
     if not any(found for found, _ in designs):

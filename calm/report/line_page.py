@@ -200,7 +200,7 @@ def _hardware_table(loads: Sequence[PieceEnvelope]) -> Table:
 def _anchor_table(signed: SignedMooring) -> Iterator[Table]:
     """Yield the table of anchor loads, with a row for each load case.
 
-    If there are several anchors or many cases, it has only the most severe case of each anchor.
+    If there are several anchors or many cases, only the most severe case of each anchor is listed.
     """
     rows = [
         (case, result) for case in signed.standing for result in case.results if result.leg.anchored

@@ -219,7 +219,7 @@ def _figures() -> tuple[_Figure, ...]:
 
 
 def case_columns(cases: Sequence[LoadCase]) -> list[blocks.Field]:
-    """Return the columns for which at least one load case has a value; no cell is bold."""
+    """Return the columns for which at least one load case has a value, without bold cells."""
     known = [one for one in _figures() if any(one.value(case) for case in cases)]
     return [figure.field(nan) for figure in known]
 
@@ -456,7 +456,7 @@ def drawn_parts(
 
 
 def item_tags(signed: SignedMooring) -> dict[tuple[str, str | None], str]:
-    """Return the mark and number of the first open item on each pair of rule and component."""
+    """Return the mark and number of the first open item for each pair of rule and component."""
     tags: dict[tuple[str, str | None], str] = {}
     for item, group in zip(signed.items, open_groups(signed.assessment), strict=True):
         for one in group:

@@ -137,7 +137,7 @@ _MOST_LEVELS = 40
 
 
 def environments_table(waters: Iterable[tuple[str, Water]]) -> blocks.Table:
-    """Tabulate depth, density, and maximum current and its depth, for each environment."""
+    """Tabulate water depth, density, and maximum current with its depth, for each environment."""
     rows = []
     for name, water in waters:
         speed = np.hypot(water.u, water.v)
@@ -160,7 +160,7 @@ def environments_table(waters: Iterable[tuple[str, Water]]) -> blocks.Table:
 
 
 def current_listing(name: str, water: Water) -> Listing:
-    """List the current used in the computation, at up to `_MOST_LEVELS` evenly chosen levels."""
+    """List the current used in the computation, at no more than `_MOST_LEVELS` of its levels."""
     count = len(water.level)
     chosen = np.unique(np.linspace(0, count - 1, min(count, _MOST_LEVELS)).round().astype(int))
     lines = [f"{'depth m':>10} {'speed m/s':>10} {'toward °':>10} {'upward m/s':>11}"]

@@ -98,7 +98,7 @@ def quality_of(result: LegResult) -> Prose:
 
 
 def accuracy_text(results: Sequence[LegResult]) -> str:
-    """Describe the numerical error of several results, and the larger error due to their inputs."""
+    """Describe the numerical error of several results, and the larger uncertainty of the inputs."""
     depth = max(one.accuracy.depth for one in results)
     share = max(
         100.0 * one.accuracy.tension / max(float(one.components.tension.max()), 1.0)

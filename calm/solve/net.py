@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from calm.errors import NoEquilibrium
-from calm.physics.compiled import by_address
+from calm.physics.compiled import outcome
 from calm.physics.line import FAILURES, GOES_ON, NO_ROOM, Floats, Line, Trace, Water
 from calm.physics.profile import profile_of
 from calm.solve import leg_closing, leg_numbers
@@ -119,12 +119,11 @@ class NetSearch:
         """Run a task (see `NetTask`), and return its outcome and the resulting unknowns."""
         own: Any = x.copy() if self.compiled else x.tolist()
         job = NetTask(task, self.net, own, how, enough, False)
-        run = by_address(do_task, job) if self.compiled else do_task
-        ending = run(job, 0.0)
+        ending: int = outcome(do_task, self.compiled, job)
         closing = task in (leg_closing.CLOSE, leg_closing.SETTLE)
         if ending == (leg_closing.NEEDS_ROOM if closing else NO_ROOM):
             raise LacksRoom
-        return int(ending), np.array(own)
+        return ending, np.array(own)
 
     def marching(
         self, step: float, cuts: int, record: int, *, given: bool, loose: float = 0.0

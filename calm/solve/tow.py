@@ -95,9 +95,9 @@ def solve_tow(
     -------
     Solution : the line is listed from its free end, so that piece 0 of the solution is the last
         piece of `line`; x and y are relative to the tow point. If there are several equilibria, the
-        result is the deepest, which an accelerating ship reaches first. At an angle step of 1°,
-        errors of positions are at most 5e-5 of the paid-out length, and relative errors of tensions
-        are at most 2e-4.
+        result is the deepest equilibrium, which an accelerating ship reaches first. At an angle
+        step of 1°, errors of positions are at most 5e-5 of the paid-out length, and relative errors
+        of tensions are at most 2e-4.
 
     Raises
     ------

@@ -141,7 +141,7 @@ def _anchors(view: View, catalogue: Catalogue, catalogs: Sequence[str | Path]) -
     """Suggest the lightest anchor that holds in every environment and situation.
 
     It is taken from the catalogue. For an anchor that the catalogue of CALM does not define, a
-    weight is suggested, too.
+    weight is also suggested.
     """
     loads = view.held or held_lines(view, catalogs)
     if view.file is None or not loads:
