@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.batch import solving
-from calm.batch.solving import sea_of  # by name: what a compiled law calls
+from calm.batch.solving import sea_of  # compiled code calls this function by its own name
 from calm.batch.statuses import OF_PROFILES, STATUSES
 from calm.case.design import Design, Result, result_together
 from calm.case.line_figures import leaning_of
@@ -194,7 +194,7 @@ class NetProfiles:
     net: Design
 
     def water(self, depth: Column, u: Column, v: Column, w: Column) -> Water:
-        """Return the water of the net with another current profile."""
+        """Return the water of the net, with its current replaced by the given profile."""
         environment = replace(self.net.file.environment, current=CurrentTable(depth, u, v, w))
         return self.net.water_of(environment)
 
@@ -237,7 +237,7 @@ class NetProfiles:
         search, step = self.search(), 4.0 * self.net.settings.angle_step
         search.put_in(self.net.water.still() if self.still else self.net.water)
         how = search.marching(step, CHOSEN, FINE, given=False)
-        # the unknowns are closed already; this call computes the scales of the legs and the slopes
+        # these unknowns already close the net; this call computes the slopes and scales
         search.do(leg_closing.CLOSE, self.base.unknowns, how, np.inf)
         return np.array(search.net.slopes), np.array(search.net.scale)
 

@@ -187,7 +187,7 @@ def sea_of(
 
 
 def in_current(problem: LineProblem, on: ProfileLevels, sea: Sea) -> LineProblem:
-    """Return a copy of a problem whose water is that of the profile in the work arrays."""
+    """Return a copy of a problem with the water of the profile in the work arrays."""
     given = problem.limits
     moving = False
     for k in range(len(sea.intervals) - 1):
@@ -264,7 +264,7 @@ def measure(
 def lean_of_head(
     problem: LineProblem, referee: Referee, results: Results, case: int, head: int
 ) -> None:
-    """Set the tilt of those pieces at the head of the line that form one rod."""
+    """Set the tilt of the pieces at the head of the line, which form one rod."""
     fine = problem.work.records[FINE]
     end = referee.last[head - 1]
     dx, dy, dz = fine[0][0] - fine[0][end], fine[1][0] - fine[1][end], fine[2][0] - fine[2][end]
@@ -287,10 +287,10 @@ def measure_slopes(
 ) -> None:
     """Write the derivatives of the depths with respect to the current components to row `case`.
 
-    For a small step in each component, the line is marched once, with the same segments and the
-    same value of the unknown. By the implicit function theorem, the unknown changes by minus the
-    change in the miss divided by the slope of the miss. With several floats at the surface, the
-    search is repeated instead.
+    For each component, the line is marched once in a slightly changed current, with the same
+    segments and the same value of the unknown. By the implicit function theorem, the change in the
+    unknown is minus the change in the miss, divided by the slope of the miss. With several floats
+    at the surface, the search is repeated instead.
     """
     found, row = problem.work.found, slopes[case]
     unknown = Unknown(
@@ -350,8 +350,9 @@ def depths_of(problem: LineProblem, referee: Referee, marched: bool, depths: Flo
 
 
 def node_of(record: Any, nodes: int, n: int) -> tuple[float, float, float, float, float, float]:
-    """Return the extrapolated position [m] and the force [N] at a node; x and y are relative to the
-    line's end.
+    """Return the extrapolated position [m] and the force [N] at a node.
+
+    x and y are relative to the last node.
     """
     x, y, z = record[BETTER], record[BETTER + 1], record[BETTER + 2]
     fx, fy, fz = record[BETTER + 3], record[BETTER + 4], record[BETTER + 5]

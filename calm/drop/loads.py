@@ -152,9 +152,9 @@ def _friction(
 
     Returns
     -------
-    The drag along the axis, its derivative by the tangential flow, its derivative by the speed,
-    multiplied by the speed, and for Hoerner's law the drag parallel to the flow divided by the
-    flow. None means zero.
+    Drag along the axis; derivative of this drag by the tangential flow; derivative of this drag by
+    the speed, divided by the speed; for Hoerner's law, drag parallel to the flow, divided by the
+    speed. None means zero.
     """
     law = chain.line.friction
     straight = kt * np.sqrt(along**2 + slowest**2)

@@ -25,8 +25,8 @@ LINEAR_DRAG_SPEED = 10.0
 rest [m/s].
 """
 CHANGE = 1e-5
-"""Tolerance of the last change of a position, as a fraction of the line length, and of a tension,
-as a fraction of the sum of all weights. The remaining error is of the order of the square of this
+"""Tolerance of the last change: for a position, as a fraction of the line length; for a tension, as
+a fraction of the sum of all weights. The remaining error is of the order of the square of this
 tolerance.
 """
 BEARING_DEPTH = 1e-4
