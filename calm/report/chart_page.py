@@ -190,8 +190,8 @@ def _write_frame(figure: Figure, axes: Axes, k: float, above: bool) -> None:
 
 
 _LOCI = (
-    "The loci show the point P, at the abscissa y′ of the lower end A and the level z′ of the "
-    "upper end B.\nA and B lie on the curve. H: their difference in height. D: their distance. L: "
+    "The loci are drawn for the point P with the y′ of the lower end A and the z′ of the upper end "
+    "B.\nA and B lie on the curve. H is their difference in height, D their distance, and L the "
     "length of cable between them."
 )
 _MARGIN = 1.5  # free margin around a label [pt]
@@ -323,7 +323,10 @@ _ROWS = (
     ("length", "length L", "m", 3),
     ("h0", "H₀ of the chart", "m", 3),
 )
-_NOTE = "A lower end, B upper end; D positive when B is downstream of A; angles to the current."
+_NOTE = (
+    "A is the lower end, B the upper end. D is positive if B is downstream of A. Angles are "
+    "measured from the current."
+)
 
 
 def answer_document(answer: ChartAnswer) -> dict[str, Any]:
@@ -351,7 +354,7 @@ def answer_part(answer: ChartAnswer) -> ReportPart:
         notes.append("Each of these cables fits the input.")
     if any(min(each["phi_a"], each["phi_b"]) < 0.0 for each in figures):
         notes.append(
-            "If the angle at an end is negative, the cable dips below that end or, if buoyant, "
+            "A negative angle at an end means that the cable dips below this end; a buoyant cable "
             "rises above it."
         )
     return ReportPart(f"Uniform current, K = {answer.k:.6g}", (table, Note(tuple(notes))))

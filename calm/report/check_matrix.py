@@ -158,8 +158,8 @@ def summary_page(rows: Sequence[SummaryRow]) -> Iterator[Block]:
         number("Water\nm", lambda row: row.depth, share=0.2),
         *(_column(codes[name], name) for name in shown),
         number("Launch", lambda row: _shown(row.handling), share=0.24),
-        aside="of all checks, rounded up. White on black: a check fails. Hatched: over 100 without "
-        "failure. Grey: 90 to 100. ?: unknown",
+        aside="of all checks, rounded up. White on black: a check fails. Hatched: over 100, but "
+        "no check fails. Grey: 90 to 100. ?: unknown",
         note=note,
     )
     yield table_of(
@@ -236,9 +236,8 @@ def mooring_page(signed: SignedMooring) -> Iterator[Block]:
                if one is reported[one.rule][0] else None),
         words("Remedy", lambda one: Cell(detail=without_asides(advice(one))), 1.5),
         aside=(
-            "For each rule, the table shows the finding with the highest utilisation. If another "
-            "finding is more severe, it follows in a second row. “Over 100 %” counts the findings "
-            "in all environments."
+            "Each rule has a row for its finding with the highest utilisation, and a second row if "
+            "another finding is more severe. “Over 100 %” counts the findings in all environments."
         ),
         ruled=False,
     )  # fmt: skip

@@ -104,9 +104,8 @@ def checks_table(signed: SignedMooring, findings: Sequence[Finding]) -> Table:
         note=f"These {len(rows)} rows summarise {len(findings)} findings: {counted}. "
         "The option --all-findings lists all of them in checks.csv.",
         aside=(
-            "For each rule, the table shows the finding with the highest utilisation. If another "
-            "finding is more severe, it follows in a second row. The number of pieces is in "
-            "brackets."
+            "Each rule has a row for its finding with the highest utilisation, and a second row if "
+            "another finding is more severe. The number of pieces is in brackets."
         ),
     )  # fmt: skip
 

@@ -110,8 +110,8 @@ def limits_table(limits: Iterable[LimitKey], title: str = "Limits as used") -> T
         number("value", lambda key: limit_value_text(key, key.value)),
         number("default", lambda key: limit_value_text(key, key.default)),
         words("source of the default", "source", 2.0),
-        note="The mooring file sets the limits that differ from their defaults; it gives no source "
-        "for them.",
+        note="The mooring file sets the limits that differ from their defaults; it gives no "
+        "sources for them.",
     )
 
 

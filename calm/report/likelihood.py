@@ -11,8 +11,8 @@ from calm.report.open_items import limit_text
 
 _NOTE = (
     "Each rule is shown for the component that exceeds its limit most often. The rules about "
-    "launch, ascent and breaks use the first 64 samples only. A sample without equilibrium exceeds "
-    "every limit."
+    "launch, ascent and breaks use the first 64 samples only. A sample without equilibrium counts "
+    "as exceeding every limit."
 )
 
 

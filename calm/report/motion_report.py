@@ -210,7 +210,7 @@ def diagnosis_document(diagnosis: Sequence[Fault]) -> list[dict[str, Any]]:
 def factors_table(factors: Mapping[str, tuple[float, float, float]], datum: float) -> Table:
     """Tabulate the common factors with their 95 % intervals."""
     rows = [
-        (TITLES[name] + (": not a plausible drag, see below" if no_drag(name, value) else ""),
+        (TITLES[name] + (": implausible, see below" if no_drag(name, value) else ""),
          f"{value:.3f}", f"{low:.3f}–{high:.3f}")
         for name, (value, low, high) in factors.items()
     ]  # fmt: skip

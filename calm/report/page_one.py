@@ -229,7 +229,7 @@ def shown_cases(cases: Sequence[LoadCase]) -> tuple[list[LoadCase], str]:
     cases, note = [*cases], ""
     if len(cases) > MOST_CASES:
         cases = worst_of_each_environment(cases)
-        note = "The table has the case with the largest knockdown of each environment."
+        note = "For each environment, the table shows the case with the largest knockdown."
     if len(cases) > MOST_CASES:
         kept = sorted(cases, key=lambda one: -one.knockdown)[:MOST_CASES]
         note += f" Less severe cases omitted: {len(cases) - MOST_CASES}."

@@ -114,8 +114,9 @@ UNSEEN = (
     "Not covered by a static calculation: waves and the tensions they cause; snap loads; fatigue "
     "due to waves and vortices; creep, corrosion and wear; transients at the end of the anchor "
     "launch; hauling and lifting during recovery.",
-    "No margin in this report includes these effects. In harsh weather they determine the life of "
-    "a surface mooring, and a safety factor on static tension does not replace their analysis.",
+    "No margin in this report includes these effects. In harsh weather, these effects determine "
+    "the life of a surface mooring. A safety factor on static tension does not replace their "
+    "analysis.",
     f"Also excluded: {'; '.join(_ALSO_EXCLUDED)}.",
 )
 """Statements on excluded effects that every report contains."""

@@ -242,11 +242,12 @@ def _measured(state: MooringInSea, band: MeasuredBand) -> str:
         else (" The height of this sea is outside that range of Hs.")
     )
     return (
-        f"Measured at sea: in seas of Hs {band.from_height:g} to {band.to_height:g} m the standard "
-        "deviation of the tension below five buoys of the Southern Ocean Flux Station was "
-        f"{band.low:.2f} to {band.high:.2f} times the computed one. For the top of this mooring, "
-        f"these ratios give a standard deviation of {say('tension', low.tension_std)} to "
-        f"{say('tension', high.tension_std)} and a maximum of {say('tension', low.tension_max)} to "
+        f"Measured at sea: in seas of Hs {band.from_height:g} to {band.to_height:g} m, the "
+        "measured standard deviation of the tension below five buoys of the Southern Ocean Flux "
+        f"Station was {band.low:.2f} to {band.high:.2f} times the computed standard deviation. For "
+        "this mooring, these factors give a standard deviation of "
+        f"{say('tension', low.tension_std)} to {say('tension', high.tension_std)} at the top, with "
+        f"a maximum of {say('tension', low.tension_max)} to "
         f"{say('tension', high.tension_max)}.{outside} "
         "The wave model has been compared with measurements at that station only."
     )

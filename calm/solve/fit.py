@@ -76,10 +76,11 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
     lift = standing_lift(line, water)
     if float(lift[:piece].sum()) <= 0.0:
         raise too_heavy(lift)
-    clamped = f" and its own {shortest:.2f} m down to the lowest clamp" if shortest else ""
+    clamped = f", and {{piece}} is at least {shortest:.2f} m long down to its lowest clamp"
     raise Status.NO_EQUILIBRIUM.because(
-        f"No length of {{piece}} puts the top of the line at {top_depth:g} m: the other pieces, "
-        f"{others:.2f} m unstretched{clamped}, are longer than the {room:.2f} m available."
+        f"No length of {{piece}} puts the top of the line at {top_depth:g} m. Only {room:.2f} m is "
+        f"available, but the other pieces are {others:.2f} m long (unstretched)"
+        f"{clamped if shortest else ''}."
         + (doubted_depth(water.depth) if others > 2.0 * room else ""),
         piece,
     )
@@ -165,7 +166,7 @@ def fit_tow_length(
         out, lack = (shortest, short) if short < 0.0 else (longest, lacking(None, longest))
         raise Status.NO_EQUILIBRIUM.because(
             f"No length of {{piece}} brings its lower end to {depth:g} m at this speed: "
-            f"with {out:g} m out it is at {depth - lack:.2f} m.",
+            f"with {out:g} m paid out, the lower end is at {depth - lack:.2f} m.",
             piece,
             "Choose another depth or speed, or change the weight of the cable or towed body.",
         )

@@ -260,7 +260,9 @@ class Nearby:
         problem, closed = self._closed(line, water)
         base, compiled = self.solution, self._compiled
         if closed.landed != base.landed:
-            raise Status.NOT_CONVERGED.because("Only one of the lines has a part on the seabed.")
+            raise Status.NOT_CONVERGED.because(
+                "Of the solved line and the changed line, only one has a part on the seabed."
+            )
         errors = Errors(base.depth_error, base.tension_error, 0.0, base.lift_error, base.pull_error)
         referee = referee_of(line, water, 0.0, compiled)
         found = not_audited(closed, errors, closed.root.x, closed.grounded)

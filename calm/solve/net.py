@@ -178,7 +178,7 @@ class NetSearch:
             raise Status.SLACK.because(
                 "The net has no horizontal restraint: every anchored leg lies on the seabed and is "
                 "slack, so the net can be at any position between its anchors.",
-                advice="Shorten a leg, or set the current in which the net must hold its position.",
+                advice="Shorten a leg, or set the design current.",
             )
         left = np.abs(np.array(net.found) * np.array(net.rows))
         miss = float(left[: net.nodes_at].max())
@@ -306,7 +306,7 @@ def roughly_closed(net: NetSearch, near: NetSolution | None, loose: float = 0.0)
         closer = net.closed(x, step, leg_closing.NEAR, loose)
         stride = stride if closer is not None else 0.5 * stride
         x, fraction = (x, fraction) if closer is None else (closer, following)
-        why = f"its legs do not meet in more than {fraction:.0%} of the current"
+        why = f"its legs do not meet if the current exceeds {fraction:.0%} of its full speed"
     if x is None or fraction < 1.0:
         net.put_in(water)
         x = net.closed(net.begin(start_of(legs, net.nodes, water)), step, leg_closing.NEAR, loose)

@@ -210,16 +210,16 @@ class Status(Enum):
     )
     SLACK = (
         "slack",
-        "Shorten the line below the surface float, or set the current for which it is designed.",
+        "Shorten the line below the surface float, or set the design current.",
     )
     GROUNDED = (
         "grounded",
-        "Shorten, lighten or buoy up the lower part, or add buoyancy at the top.",
+        "Shorten or lighten the lower part, or add buoyancy to it or at the top.",
     )
     ANCHOR_LIFTS = ("anchor-lifts", "Use a heavier anchor, or less buoyancy.")
     ABOVE_SURFACE = (
         "above-surface",
-        "Shorten the line, or put the buoyancy that reaches the surface into the surface float.",
+        "Shorten the line, or combine all buoyancy that reaches the surface in one surface float.",
     )
 
     def __init__(self, label: str, advice: str) -> None:
@@ -346,8 +346,8 @@ def refuse_unsupported(line: Line, water: Water) -> None:
         raise too_heavy(lift)
     if support == FOLDS:
         raise Status.SLACK.because(
-            f"In still water the line is slack below {{piece}}: {lacking:.0f} N of "
-            "buoyancy are missing to support the part above.",
+            f"In still water, the line is slack below {{piece}}: the part above needs another "
+            f"{lacking:.0f} N of buoyancy.",
             piece,
         )
 
@@ -362,5 +362,5 @@ def too_heavy(lift: Floats) -> NoEquilibrium:
     up, down = float(lift[lift > 0.0].sum()), float(-lift[lift < 0.0].sum())
     return Status.NO_EQUILIBRIUM.because(
         f"There is too little buoyancy to hold the line up: the net buoyancy of the buoyant pieces "
-        f"is {up:.0f} N, the weight of the other pieces in water is {down:.0f} N."
+        f"is {up:.0f} N, but the weight of the other pieces in water is {down:.0f} N."
     )

@@ -280,4 +280,4 @@ def differences(before: View, after: View) -> list[str]:
         counts = [sum(each.state is state for each in view.findings) for view in (before, after)]
         if counts[0] != counts[1]:
             effects.append(f"{word} {counts[0]} → {counts[1]}")
-    return effects or ["none of the displayed values changes"]
+    return effects or ["no displayed value changes"]
