@@ -169,7 +169,7 @@ def _launch(assessment: Assessment) -> Table:
     rows = [
         ("Touchdown speed" + drag, say("speed", launch.fall_speed),
          _limit(assessment, "launch-speed")),
-        ("If the drag is doubled or halved",
+        ("Drag doubled or halved",
          f"{slow} to {fast} {QUANTITIES['speed'].display_unit}", ""),
         ("Anchor tension in descent", LOAD.say(launch.anchor_tension), ""),
         (f"Largest tension, {label}", LOAD.say(float(np.nanmax(tension))), _limit_of(loaded)),
