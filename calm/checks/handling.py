@@ -51,7 +51,8 @@ def backup(handling: Handling) -> Iterator[Verdict]:
     if handling.leg.file.release is None:
         if is_hauled_in(handling):
             message = (
-                "A line without a release is hauled in: pieces below a break stay on the seabed."
+                "A line without a release is hauled in; if it breaks, the pieces below the break "
+                "stay on the seabed."
             )
             yield verdict_on(None, State.NOT_JUDGED, message)
             return
@@ -189,10 +190,12 @@ def recovery(handling: Handling) -> Iterator[Verdict]:
     speed, rises = rise.rise_speed, "does not rise"
     if speed > 0.0:
         rises = f"rises at {say('speed', speed)}"
-    message = f"Released below {lowest.label}, the line {rises}; "
+    message = f"After release below {lowest.label}, the line {rises}; "
     still = ""
     if rise.in_still_water:
-        still = " This is the speed in still water, as no steady ascent was found in the current."
+        still = (
+            " This is the speed in still water, because no steady ascent was found in the current."
+        )
     remedy = "Add buoyancy above the release, or remove weight."
     source = cited(handling.leg.file, "minimum_rise_speed")
     if limit <= speed < USUAL_RISE_SPEED:

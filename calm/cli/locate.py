@@ -140,7 +140,7 @@ def locate(
         return ExitCode.FINDING
     working, text = edited
     lost = working.save(text)
-    narrate(f"{update}: `deployed:` now has position and depth" + (f"; {lost}" if lost else ""))
+    narrate(f"{update}: `deployed:` now has a position and a depth" + (f"; {lost}" if lost else ""))
     return ExitCode.DONE
 
 

@@ -103,8 +103,8 @@ def waves(
         return ExitCode.DONE
     narrate(
         f"{file}: {SLACK}: the line goes slack, so the linear tensions are not "
-        "valid. Add weight or stretch to the line, or solve it in the time domain: "
-        "`calm export --to moordyn`."
+        "valid. Add weight, use a more elastic line, or simulate the mooring in the time domain "
+        "(`calm export --to moordyn`)."
     )
     return ExitCode.NO_EQUILIBRIUM
 

@@ -34,8 +34,8 @@ class RuleText:
     has_ratio: bool = True
 
 
-_WAVES = "waves are checked for an environment, by `calm check`"
-_ONCE = "checked once for a mooring, by `calm check`"
+_WAVES = "`calm check` checks the waves of each environment"
+_ONCE = "`calm check` checks this once for each mooring"
 
 RULES = {
     "equilibrium": RuleText("Equilibrium", "",
@@ -47,11 +47,12 @@ RULES = {
         "the strongest current of all environments, and the range of levels in each profile",
         "There is a warning if the current is below 0.2 m/s, below 0.9 times the strongest "
         "current in the record used for an environment, or below 1/50 of the strongest current of "
-        "another environment. There is also a warning if the levels leave more than 25 m and a "
-        "tenth of the depth uncovered at the top or at the bottom",
+        "another environment. There is also a warning if the gap between the levels and the "
+        "surface, or between the levels and the seabed, exceeds both 25 m and a tenth of the "
+        "depth",
         "DNV-RP-C205: wind drives a surface current of 0.015 to 0.03 times its speed, up to 0.2 "
         "m/s at 7 m/s",
-        "the profiles of a record are the current"),
+        "in a batch, the record supplies the currents"),
     "drag-coefficient": RuleText("Drag coefficient", "",
         "drag of spheres and cylinders in a flow whose Reynolds number is above 2e5, or beyond "
         "the curve of `drag: reynolds`",
@@ -62,14 +63,15 @@ RULES = {
         "falls",
         "the profiles of a record are solved with one law of drag"),
     "environment": RuleText("Environment", "",
-        "possible but unusual values of an environment: directions that look like radians, a "
-        "level opposite to both its neighbours, a current that increases down to the seabed or "
-        "exceeds any current of deep water, a density that no sea has, tides of more than 20 m, "
-        "wind of more than 75 m/s; levels of a storm weaker than half of the ordinary current; no "
-        "`wind` although a surface float has a `wind_area`",
+        "possible but unusual values of an environment: directions that look like radians; a "
+        "current opposite to the currents at the levels above and below; a current that increases "
+        "down to the seabed, or is stronger than any current measured in deep water; a density not "
+        "found in any sea; a tidal range of more than 20 m; wind of more than 75 m/s; at some "
+        "levels, a storm current of less than half the ordinary current; no `wind` although a "
+        "surface float has a `wind_area`",
         "There is a warning for each of these",
         "CALM's own limits, from ranges found at sea and common typing errors",
-        "environments are compared with each other, by `calm check`"),
+        "`calm check` compares the environments with each other"),
     "missing": RuleText("Missing values", "",
         "values that rules need but a component lacks; for each component id and value, one "
         "finding lists the rules and the pieces concerned",
@@ -149,7 +151,8 @@ RULES = {
         "than its working load or, if this is unknown, under more than a fifth of its breaking "
         "load",
         "CALM's own limit: soundings have a similar error, and ropes are measured under a small "
-        "load"),
+        "load",
+        "`calm check` checks this in each environment"),
     "fish-bite": RuleText("Fish bite", "depth",
         "minimum depth of every synthetic rope, in more than 200 m of water and less than 60° "
         "from the equator",

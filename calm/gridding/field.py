@@ -3,13 +3,14 @@
 The field is a mean profile plus an anomaly, both estimated from the record. The standard deviation
 of the anomaly depends on depth. Its correlation is a Matérn function of order 3/2 along depth and
 an exponential function in time (Rasmussen and Williams, Gaussian Processes for Machine Learning,
-2006, eq. 4.17 and 4.18; mean and variance eq. 2.25 and 2.26). Part of the variance is uncorrelated:
-scales below the sensor spacing, and sensor noise.
+2006, eq. 4.17 and 4.18; mean and variance eq. 2.25 and 2.26). The uncorrelated part of the variance
+is due to scales below the sensor spacing, and to sensor noise.
 
-An error in the depth of the instruments causes an error that equals the depth error times the local
-gradient. It is added to the standard deviation of the result without averaging over instruments,
-because it may be common to the line for the whole record. Half of its variance also counts as
-independent noise of each instrument, which gives more weight to instruments of well-known depth.
+An error in the depth of an instrument causes an error in its values, which equals the depth error
+times the local gradient. This error is added to the standard deviation of the result without
+averaging over instruments, because it may be common to all instruments for the whole record. Half
+of its variance also counts as independent noise of each instrument, which gives more weight to
+instruments of well-known depth.
 """
 
 from __future__ import annotations
@@ -85,7 +86,7 @@ class GriddedQuantity:
     noise : standard deviation of sensor noise, in the unit of the quantity
     in_time : whether the estimate at a time also uses the samples at the neighbouring times
     beyond : factor by which standard deviations are multiplied above the uppermost and below the
-        lowest sensor; it is found by withholding each sensor in turn
+        lowest sensor; the factor is found by withholding each sensor in turn
     """
 
     samples: Samples
@@ -318,7 +319,8 @@ def _likeliest(field: GriddedQuantity, times: NDArray[np.int64]) -> Scales:
     """Find the most likely correlation scales, from the samples at some times.
 
     A weak prior determines scales that the record does not constrain: a quarter of the line, six
-    time steps, and 2 % uncorrelated variance, each within a factor of about five.
+    time steps, and 2 % uncorrelated variance. The standard deviation of the prior is a factor of
+    about five for each scale.
     """
     from scipy.optimize import minimize
 
@@ -382,12 +384,14 @@ def left_out(field: GriddedQuantity, times: NDArray[np.int64]) -> tuple[Floats, 
 
 
 MIN_RESIDUALS = 20
-"""Minimum number of residuals of a sensor for a factor."""
+"""Minimum number of residuals of a sensor from which a factor is computed."""
 
 
 def _beyond(field: GriddedQuantity, times: NDArray[np.int64]) -> float:
-    """Find the factor by which bands must be widened to cover 95 % of a sensor beyond all others,
-    if each sensor is withheld in turn.
+    """Find the factor by which 95 % intervals must be widened beyond the outermost sensors.
+
+    Each sensor is withheld in turn. The widened intervals cover 95 % of its values at times when
+    the sensor is above or below all others.
     """
     residual, spread = left_out(field, times)
     place = np.where(np.isfinite(residual), field.samples.depth[times], np.nan)

@@ -314,8 +314,9 @@ def sample_notes(
 
     The problems are files that seem to be exchanged, excluded values, and series without values.
 
-    Files seem to be exchanged if pressures do not agree with the depth of the instrument, or if the
-    mean temperatures would change steadily with depth only after an exchange.
+    Two files seem to be exchanged if the pressures in a file do not agree with the depth of its
+    instrument, if a file names another instrument, or if the mean temperatures would rise or fall
+    steadily with depth after the exchange, but do not do so now.
     """
     labels = places.places.label
     for i, at in points.items():

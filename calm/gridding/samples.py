@@ -99,7 +99,7 @@ ANOTHER_PLACE = 30.0
 """Difference between pressure [dbar] and depth [m] that indicates another instrument."""
 
 MOST = 5_000_000
-"""Maximum number of times written: one a second for two months."""
+"""Maximum number of times that are written; enough for one time a second during two months."""
 
 
 @dataclass(frozen=True)

@@ -20,8 +20,8 @@ from calm.records.current_terms import parse_time, time_text
 from calm.records.instrument_series import Identity
 
 ASTRAY = 0.02, 5.0
-"""Difference between nominal and still-water depth above which it is reported: as a share of the
-depth, and in metres.
+"""A difference between nominal and still-water depth is reported if it exceeds both this share of
+the depth and this distance [m].
 """
 _ITEMS = ("deployed", "items")
 

@@ -1,7 +1,7 @@
 """Unknowns common to a whole record: factors on the line, the datum, and sensor offsets.
 
 The linear model in this module also serves to weigh sensor faults (slips, drifts and common steps)
-by the evidence of many times.
+from the readings at many times.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from calm.physics.line import Floats, Integers
 FURTHEST = 1.0
 """Limit on the logarithm of a factor."""
 REACH = 5.0
-"""Least distance from a sensor to the points between which its slope on the line is taken [m]."""
+"""Minimum distance from a sensor to the two points that give the slope of the line there [m]."""
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ def common_beforehand(
 
 
 def fixed_slopes(common: Floats) -> Floats:
-    """Append derivatives with respect to the datum and the offsets to those of the factors.
+    """Append the derivatives for the datum and the offsets to the derivatives for the factors.
 
     Parameters
     ----------
@@ -141,7 +141,7 @@ def repeated(pull: Floats) -> float:
 
 
 FEWEST = 4
-"""Least number of readings of a sensor before and after a slip of its clamp."""
+"""Minimum number of readings of a sensor before and after a slip of its clamp."""
 
 
 ROBUST = 4.0
@@ -211,9 +211,9 @@ class LinearLaw:
 
 
 MISHUNG = -1
-"""Code of a sensor that hangs elsewhere throughout, in place of a time."""
+"""Code, instead of the index of a time, for a sensor that is misplaced during the whole record."""
 RAMPS: Mapping[int, float] = {-2: 1.0, -3: 0.3}
-"""Share of the record over which a drift lasts, by the code that `moved_by` takes."""
+"""Duration of a drift as a share of the record, by the code of the drift in `moved_by`."""
 
 
 def moved_by(code: int, fall: Floats, share: Floats) -> Floats:
@@ -221,8 +221,8 @@ def moved_by(code: int, fall: Floats, share: Floats) -> Floats:
 
     Parameters
     ----------
-    code : kind of error: 0 for an offset, the index of the time of a slip, `MISHUNG` for a wrong
-        place on the line throughout, or a key of `RAMPS` for a drift
+    code : kind of error: 0 for an offset, the index of the time of a slip, `MISHUNG` for a sensor
+        that is misplaced during the whole record, or a key of `RAMPS` for a drift
     fall : (n,) increase in the depth of the sensor per metre that it slips down the line
     share : (n,) share of the record that has elapsed, 0 to 1
     """
@@ -292,8 +292,8 @@ DATUM = 0.01
 OFFSET = 1.0
 """Prior deviation of the offset of a sensor [m]."""
 ELSEWHERE, MISPLACED, SLIPPED = 20.0, 0.01, 0.01
-"""Prior deviation of the displacement of a slipped or misplaced sensor [m], the probability that it
-is misplaced from the start, and the probability that its clamp slips during the record.
+"""Prior deviation of the displacement of a slipped or misplaced sensor [m], the probability that a
+sensor is misplaced from the start, and the probability that its clamp slips during the record.
 """
 MOVED = 0.01
 """Probability that the whole mooring is moved to another depth during the record."""
@@ -302,7 +302,8 @@ FALSE: Mapping[int, float] = {0: 0.01, 1: 0.01, 2: 0.03, 3: 0.10, 4: 0.30, 8: 0.
 DRIFT, DRIFTS = 5.0, 0.01
 """Prior deviation of the drift over the record [m], and the probability of a drift."""
 TIDE = 1.0
-"""Deviation of tide and air pressure [m], unless the sea level is given: `RESIDUAL_TIDE`."""
+"""Deviation of tide and air pressure if the sea level is not given [m]."""
 RESIDUAL_TIDE = 0.15
+"""Deviation of the unmeasured part of tide and air pressure if the sea level is given [m]."""
 NOISE = 0.2
 """Deviation of a depth from pressure at one time [m]."""

@@ -66,7 +66,7 @@ OF_MOTION: Mapping[str, tuple[tuple[str, ...], tuple[str, str, Attributes]]] = {
         ),
     ),
 }
-"""Dimensions besides time, unit, meaning and attributes of variables added to a batch result."""
+"""Variables added to a batch result: dimensions other than time, unit, meaning and attributes."""
 OF_CURRENTS = frozenset({"current_factor", "current_doubt", "plain_depth"})
 """Variables of `OF_MOTION` that need a measured current."""
 MEASURED, ESTIMATED, MISSING = 1, 8, 9
@@ -85,7 +85,7 @@ _OF_DOCUMENT = {
 def solve_times(
     task: Task, layout: ResultLayout, extent: list[np.float32], start: int
 ) -> SolvedBlock:
-    """Estimate the depths in the block of times that begins at `start`, ready to be written.
+    """Estimate the depths in the block of times that begins at `start`, and pack them for writing.
 
     The smallest and the largest of these depths [m] are appended to `extent`.
     """
@@ -253,7 +253,7 @@ class Task:
             depth, deviation = smoother.depth[times], smoother.deviation[times]
             read = smoother.read(times)
             surface = smoother.surface[times]
-        # inferred currents may exceed the limit of measured ones, which is for errors in files
+        # the limit finds errors in files of measured currents; inferred currents may exceed it
         limit = self.mooring.file.environment.maximum_speed
         share = np.minimum(1.0, (1.0 - 1e-9) * limit / np.maximum(np.hypot(read.u, read.v), 1e-9))
         likely = forward.solve(read.level, share * read.u, share * read.v)

@@ -1,10 +1,10 @@
 """Diagnosis of sensors: clocks, gains, offsets, drifts, slipped clamps, exchanged labels.
 
-Each fault is an additional unknown, with its own prior, in the fit of the whole record. It is
-weighed by a Bayes factor (Kass and Raftery 1995) from the likelihood of the pressures. The misfit
-of each time follows Student's t distribution, and an error that lasts for several times counts
-once. The most likely fault is accepted, and the others are weighed again together with it, until no
-further fault is likely.
+Each fault is an additional unknown, with its own prior, in the fit of the whole record. The fault
+is weighed by a Bayes factor (Kass and Raftery 1995) from the likelihood of the pressures. The
+misfit at each time follows Student's t distribution, and an error that lasts for several times
+counts once. The most likely fault is accepted, and the other faults are weighed again together with
+this fault, until no further fault is likely.
 """
 
 from collections.abc import Iterator, Sequence
@@ -35,7 +35,7 @@ from calm.physics.line import Floats
 LIKELY_ALONE = 1000.0
 """Odds above which a fault is reported if currents were not measured.
 
-They are higher because an error of the line may be the cause instead.
+These odds are higher because an error of the line may be the cause instead.
 """
 MOST = 8
 """Maximum number of faults."""
@@ -52,15 +52,15 @@ LEAST = {
 }  # fmt: skip
 """Smallest faults that are reported.
 
-Units: m for `moved`, `offset`, `drift` and `slip`; for `clock` hours, and also time steps of the
-record; 1 for `gain`; otherwise the logarithm of a factor.
+Units: m for `moved`, `offset`, `drift` and `slip`; for `clock`, hours or time steps of the record,
+whichever are longer; 1 for `gain`; logarithm of a factor for the other kinds.
 """
 RIVALS = 3
 """Maximum number of rival explanations reported."""
 FINEST = 0.02
 """Uncertainty added to the lag of a clock, as a share of the time step of the record."""
 FEWEST = 20
-"""Least number of times for a diagnosis."""
+"""Minimum number of times for a diagnosis."""
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,8 @@ class _Found:
     log : logarithm of the likelihood
     value, deviation : size of the last fault, and its standard deviation
     left : (n, s) residuals [m]
-    pulls : (n,) derivative of the log-likelihood of each time by the size of the last fault
+    pulls : (n,) derivative of the log-likelihood at each time with respect to the size of the last
+        fault
     """
 
     log: float
@@ -132,7 +133,7 @@ def law_near(task: Task) -> tuple[LinearLaw | None, list[Suspect]]:
 
 
 class Diagnosis:
-    """Search for faults in a record, by the likelihood of the pressures with each fault."""
+    """Search for faults in a record; the likelihood of the pressures decides between faults."""
 
     def __init__(self, task: Task, law: LinearLaw, causes: Sequence[Suspect] = ()) -> None:
         self.causes = causes
@@ -161,9 +162,9 @@ class Diagnosis:
     def _at(self, late: float) -> Floats:
         """Return (n, s) depths read by the sensors `late` hours after each time [m].
 
-        Between the times of the record, the interpolation takes the slope and a quarter of the
-        curvature. It neither amplifies nor smooths noise; either would by itself favour a clock
-        error.
+        Between the times of the record, the interpolation uses the slope and a quarter of the
+        curvature. The interpolation therefore neither amplifies nor smooths noise; either would
+        favour a clock error.
         """
         whole = round(late / self.step) if self.step > 0.0 else 0
         part = late / self.step - whole if self.step > 0.0 else 0.0

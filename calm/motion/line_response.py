@@ -141,9 +141,10 @@ class Forward:
 
 
 def forwards_of(mooring: Design, common: Common) -> tuple[Forward, dict[str, Forward]]:
-    """Return the mooring with the common factors, and copies each with one factor changed.
+    """Return the mooring with the common factors, and one copy for each factor.
 
-    The copies are by name of the changed factor.
+    In the copy for a factor, only this factor is changed. The keys of the copies are the names of
+    the factors.
     """
     shifted = {
         name: Forward(mooring, {**common.factors, name: value * float(np.exp(STEP))})
@@ -182,15 +183,15 @@ point as a share of its knockdown; bends at floats and clamps cause local errors
 
 
 def own_errors(depth: Floats, still: Floats, learnt: bool) -> Floats:
-    """Return (n, p, p) error covariance of the computed depths, for an error share of 1 [m²].
+    """Return the error covariance (n, p, p) of the computed depths, for a relative error of 1 [m²].
 
     If the distribution of the currents was not learnt, the error at a point is a share of the
     knockdown of that point, and errors are correlated over a quarter of the line.
 
-    A learnt distribution absorbs such errors. The error of each stretch of the line is then a share
-    of the contribution of the stretch to the knockdown. The error at a point is the sum over the
-    stretches below the point, plus a smaller share of the knockdown of the point. The sum varies
-    smoothly between two sensors.
+    A learnt distribution already accounts for such errors. The error of each stretch of the line is
+    then a share of the contribution of the stretch to the knockdown. The error at a point is the
+    sum over the stretches below the point, plus a smaller share of the knockdown of the point. The
+    sum varies smoothly between two sensors.
 
     Parameters
     ----------

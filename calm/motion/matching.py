@@ -169,7 +169,7 @@ def hung_currents(
 
 
 CERTAIN = 2.0
-"""Least excess cost of the second-best order of sensors for a unique match [m]."""
+"""Minimum excess cost of the second-best order of sensors for a unique match [m]."""
 
 
 def matched_by_place(
@@ -214,7 +214,7 @@ def matched_by_place(
 
 
 CLEAR = 10.0
-"""Least excess cost of the second-best order of instruments for a unique match [m]."""
+"""Minimum excess cost of the second-best order of instruments for a unique match [m]."""
 
 
 def points_of(series: Sequence[Identity], line: LinePlaces) -> tuple[dict[int, int], list[str]]:
@@ -307,7 +307,7 @@ def in_order(
     depths : cost per metre of difference between the nominal depth and the depth of the point
     spacings : cost per metre of difference between the nominal and the actual distance of
         neighbours; an error common to all nominal depths does not change these distances
-    clear : least excess cost of the second-best match for the best match to be accepted [m]
+    clear : minimum excess cost of the second-best match for the best match to be accepted [m]
 
     Returns
     -------
@@ -347,8 +347,8 @@ def aligned(
 ) -> tuple[tuple[float, list[int]], tuple[float, list[int]] | None]:
     """Find the cheapest and the second-cheapest way to match each of `few` depths to one of `many`.
 
-    Matches preserve the order. Each match is returned as its cost, and the index in `many` for each
-    of `few`. The second-cheapest match is None if there is only one match.
+    Matches preserve the order. Each match is returned as its cost and a list, which has an index in
+    `many` for each of `few`. The second-cheapest match is None if there is only one match.
 
     Parameters
     ----------

@@ -35,19 +35,20 @@ TURNS, ENOUGH, PLACED = 20, 0.05, (1, 3, 5, 8, 11)
 which the factors are updated.
 """
 FACTOR_STEP = 0.05
-"""Step of the logarithm of a factor for its slopes, and change above which slopes are renewed."""
+"""Step in the logarithm of a factor to find its slopes, and change that requires new slopes."""
 STALE = 0.03
 """Change in a current above which its slopes are renewed [m/s]."""
 LONGEST = 0.5
 """Maximum change in a current in one step [m/s]."""
 
 MOST_LEVELS, KNOTS, APART = 8, 12, 2.0
-"""Number of levels up to which each is a knot, number of knots for more levels, and the distance
+"""Maximum number of levels if each level is a knot, number of knots for more levels, and distance
 below which levels share a knot [m].
 """
 ABOVE, BELOW = 5.0, 20.0
-"""Height of an additional knot above the top of a line that extends above the levels, and least
-distance from the lowest level to the seabed for a knot half-way [m].
+"""Heights for two additional knots [m]. If the line extends above the levels, a knot is added at
+the first height above the top of the line. If the lowest level is above the seabed by more than the
+second height, a knot is added half-way between them.
 """
 
 METER = 0.02, 0.10
@@ -58,7 +59,7 @@ Both are multiplied by a factor that depends on the quality flag.
 FLAGGED: Mapping[int, float] = {0: 1.0, 1: 1.0, 2: 1.5, 3: 2.0, 4: 4.0, 8: 3.0}
 """Default factors on the meter error, by quality flag."""
 FLAG_RANGE, FEWEST = (0.6, 15.0), 20
-"""Limits of the estimated factor on the meter error, and the least number of readings.
+"""Limits of the estimated factor on the meter error, and the minimum number of readings.
 
 The lower limit is above zero because the current at even a perfect meter differs from the current
 on the line around it.
@@ -68,7 +69,7 @@ STUDENT = 4.0
 ALIKE_HOURS = 1.0
 """Time over which the error of a meter persists [h]."""
 LEAST_SPREAD = 0.02
-"""Least deviation of a current about its mean [m/s]."""
+"""Minimum deviation of a current about its mean [m/s]."""
 CURRENT_HOURS, CURRENT_REACH = 16.0, 600.0
 """Initial correlation time [h] and correlation depth [m] of the current."""
 HOURS = (4.0, 16.0)
@@ -85,13 +86,13 @@ STRETCHES, SPAN, LOCAL = 10, 0.25, 0.3
 """Number of stretches with separate errors in knockdown, their correlation length as a share of the
 line, and the local error of a point as a share of its own knockdown.
 
-Without the local error, dune2 is 8 % better, synthetic moorings with ten-minute meters 3 % worse,
-and RAPID's depths without currents up to 26 % worse.
+Without the local error, the depths of dune2 would be 8 % better, but those of synthetic moorings
+with ten-minute meters would be 3 % worse, and those of RAPID without currents up to 26 % worse.
 """
 SHARE, SHARES, LINE_HOURS = 0.07, (0.01, 0.4), 6.0
 """Prior and limits of the error share of a stretch, and its correlation time [h]."""
 TIDE_HOURS = 2.4
-"""Correlation time of the tide [h]: the autocorrelation of a semidiurnal tide falls to 1/e."""
+"""Time in which the autocorrelation of a semidiurnal tide falls to 1/e [h]."""
 STEP = 0.02
 """Typical hourly step of the datum and offsets [m].
 
@@ -99,14 +100,11 @@ These steps and the initial values have Student's t distribution with one degree
 allows rare steps that are many times as large.
 """
 TAILS = {"datum": 1.0 / 2.0, "place": 1.0 / 5.0}
-"""Weight 1 / (1 + n) of the square of an unknown in its variance, for n degrees of freedom.
-
-A place of 2 cm begins at a variance of 1 m², and shrinks unless it exceeds four deviations.
-"""
+"""Weight 1 / (1 + n) of the square of an unknown in its variance, for n degrees of freedom."""
 ZEROS = 2.0
-"""Variance of Student's law with four degrees of freedom over that of a normal law."""
+"""Ratio of the variance of Student's law with four degrees of freedom to that of a normal law."""
 SETTLED = 6
-"""Number of steps before the line error is estimated, as it would absorb sensor steps."""
+"""Iterations before the line error is estimated, since it would absorb sensor steps at first."""
 LONGER = 30.0
 """Maximum factor by which a step of the line error is lengthened."""
 FURTHEST = 0.7
@@ -280,7 +278,7 @@ class CurrentSmoother:
         self._last, self._longer = 0.0, 4.0
         self.factor = np.zeros(len(self.names))
         step = np.diff(self.hours, prepend=self.hours[:1])
-        steps = np.repeat([1.0, 0.0, 1.0], [1, sensors, sensors])  # a zero is constant
+        steps = np.repeat([1.0, 0.0, 1.0], [1, sensors, sensors])  # zeros are constant
         self.usual = STEP**2 * step[:, None] * steps
         self._forwards: dict[tuple[float, ...], Forward] = {}
         self.bend = np.zeros((len(one.time), len(self.still)))
@@ -296,7 +294,7 @@ class CurrentSmoother:
         return np.interp(self.knots.depth, place[order], value[order])
 
     def _measured_state(self, place: Floats) -> Floats:
-        """Return (n, 2 K) measured currents less their mean, interpolated to the knots."""
+        """Return (n, 2 K) measured currents minus their mean, interpolated to the knots."""
         both = self.measured.u + 1j * self.measured.v
         known = np.flatnonzero(np.isfinite(both).any(axis=1))
         state = np.zeros((len(both), len(self.mean)))
@@ -363,7 +361,10 @@ class CurrentSmoother:
     def _with_slopes(
         self, state: Floats, factor: Floats, times: NDArray[np.int64]
     ) -> tuple[Floats, Floats]:
-        """Return depths, and (n, p, 2 K + f) derivatives by currents and logarithms of factors."""
+        """Return depths, and their derivatives (n, p, 2 K + f).
+
+        The derivatives are with respect to the currents and the logarithms of the factors.
+        """
         flow = self.knot_depth[times], *self.currents(state)
         there, slopes = self.forward(factor).slopes(*flow)
         steps = FACTOR_STEP * np.eye(len(factor))
@@ -753,8 +754,8 @@ class CurrentSmoother:
         """Return a linear model of the pressures at several times, with currents from meters alone.
 
         The model is linearised about the smoothed currents of the meters. Also return these
-        currents at the knots, and the line in these currents with its slopes with respect to the
-        logarithm of a factor on all speeds.
+        currents at the knots, and the depths of the line in these currents. The slopes of the
+        depths are derivatives with respect to the logarithm of a factor on all speeds.
         """
         one, at, factor, law = self.measured, self.columns, self.factor, self.meter_law()
         wide = WIDER**2 * law.steady

@@ -197,7 +197,7 @@ def _measured_at(one: InstrumentSeries, wanted: Times, gap: np.timedelta64) -> F
 FAR_NEIGHBOURS = 4.0
 """Maximum span between the readings before and after a time, in steps of the record."""
 SPIKE, ALIKE = 6.0, 3.0
-"""Deviations of a spike, and deviations below which all others agree with their neighbours."""
+"""Minimum relative deviation of a spike, and maximum of all other sensors at the same time."""
 
 
 def without_spikes(
@@ -205,9 +205,9 @@ def without_spikes(
 ) -> tuple[MooringMeasurements, list[str]]:
     """Remove readings far from the readings before and after, if other sensors show no change.
 
-    The deviation of a reading from the straight line between the two adjacent readings is compared
-    with the usual deviation and with a quarter of the difference between the adjacent readings.
-    Also return notes on the removal.
+    The deviation of a reading is its distance from the straight line between the two adjacent
+    readings. The deviation is divided by the usual deviation, to which a quarter of the difference
+    between the adjacent readings is added in quadrature. Also return notes on the removal.
 
     Parameters
     ----------

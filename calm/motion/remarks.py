@@ -23,16 +23,16 @@ OF_LINE = ("currents", "buoyancy", "length", "drag", "fouling")
 LIKELY = 20.0
 """Odds above which a fault is reported."""
 FAR_OFFSET = 2.5
-"""Offset of all sensors above which it is reported, in prior standard deviations."""
+"""Common offset of all sensors above which the offset is reported, in prior deviations."""
 FAR_DATUM = 10.0
-"""Offset of all sensors that is always reported [m]."""
+"""Common offset of all sensors above which the offset is always reported [m]."""
 FAR_LENGTH = 5.0
-"""Error in length above which it is reported if currents were not measured, in prior deviations.
+"""Error in length above which the error is reported if no currents were measured.
 
-Inferred currents absorb much of an error in length.
+The unit is the prior deviation. Inferred currents absorb much of an error in length.
 """
 FAR_FACTOR = 3.0
-"""Distance of a drag factor from 1, in prior deviations, above which it absorbs another error."""
+"""Logarithm of a drag factor, in prior deviations, above which another error is suspected."""
 WORST = 0.3
 """Share of the knockdown above which the error of the line is reported."""
 
@@ -45,11 +45,10 @@ class Fault:
     ----------
     label : label of the sensor; `ALL` for all sensors together
     kind : `moved`, `clock`, `gain`, `offset`, `drift`, `slip`, `exchanged`, or one of `OF_LINE`
-    value, low, high : size of the fault, and the limits of its 95 % interval. The size of a `clock`
-        fault is the lag [h]; of a `gain`, the gain; of an `offset` or `moved`, the excess depth
-        [m]; of a `drift`, the excess depth at the end of the drift [m]; of a `slip`, the distance
-        moved down the line [m]; of `exchanged`, 0; of a fault in `OF_LINE`, the factor on the value
-        in the file or on the reading of the meter
+    value, low, high : size of the fault, and the limits of its 95 % interval. Sizes are, by kind:
+        `clock`: lag [h]; `gain`: gain; `offset` and `moved`: excess depth [m]; `drift`: excess
+        depth at the end of the drift [m]; `slip`: distance moved down the line [m]; `exchanged`: 0;
+        kinds in `OF_LINE`: factor on the value in the file or on the reading of the meter
     odds : odds in favour of this fault against all alternatives, including no fault
     since : start of a slip or drift; NaT for other faults
     until : end of a drift; NaT for other faults
@@ -264,7 +263,7 @@ class Agreement:
 
 
 def calm_times(down: Floats, among: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return a mask of the 10 % of the times with the smallest knockdown, but of at least one time.
+    """Return a mask of the 10 % of the times with the smallest knockdown (at least one time).
 
     Parameters
     ----------

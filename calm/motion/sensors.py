@@ -247,18 +247,18 @@ def _refuse_far(path: Path, time: NDArray[np.datetime64], level: Floats) -> None
 CONSTANT = 1e-6
 """Range of depths up to which a sensor counts as constant [m]."""
 MISPLACED = 20.0
-"""Tolerance for the shallowest depth of a sensor against its place in still water [m].
+"""Distance by which readings may be shallower than the sensor in still water [m].
 
-A factor of two is also accepted.
+Readings deeper than half of the depth in still water are also accepted.
 """
 UNITS = {"psi for dbar?": 1.45038, "dbar for psi?": 0.68948}
 """Ratio of pressures with a confused unit to the true pressures."""
 ALIKE, APART = 0.03, 3.0
-"""Relative tolerance of that ratio, doubled for several sensors, and least distance between
-exchanged sensors [m].
+"""Relative tolerance of the ratio in `UNITS`, doubled for several sensors, and minimum distance
+between exchanged sensors [m].
 """
 BELOW = 1.1
-"""Readings are too deep if they exceed the seabed by this factor and by `MISPLACED`."""
+"""Readings are too deep if they exceed the water depth by this factor and by `MISPLACED`."""
 
 
 def plausible(
@@ -266,11 +266,12 @@ def plausible(
 ) -> tuple[InstrumentSeries, list[str]]:
     """Remove implausible readings from a sensor, and return notes about the removal.
 
-    A reading is implausible if it is far shallower than the sensor in still water (taken on deck,
-    or a fill value), if it is far below the seabed, or if the sensor is stuck. Only the first of
-    several readings at the same time is kept. Depths are corrected if the readings on deck show
-    that the pressures are absolute. If most readings are too shallow or too deep, no reading is
-    removed, because the sensor itself is wrong; `unusable` then reports the sensor.
+    A reading is implausible if it is far below the seabed, if the sensor is stuck, or if the
+    reading is far shallower than the sensor in still water. Such shallow readings are fill values,
+    or were taken on deck. Only the first of several readings at the same time is kept. Depths are
+    corrected if the readings on deck show that the pressures are absolute. If most readings are too
+    shallow or too deep, no reading is removed, because the sensor itself is wrong; `unusable` then
+    reports the sensor.
 
     Parameters
     ----------
@@ -349,14 +350,14 @@ def _stuck(value: Floats) -> NDArray[np.bool_]:
 AIR = instrument_text.AIR / 1.0082
 """Excess depth from the pressure of the air [m], at 1.0082 dbar/m of sea water."""
 NEAR_AIR, ON_DECK = 2.5, 0.6
-"""Tolerances for that excess: in calm water, and for a sensor on deck [m]."""
+"""Tolerances for the excess `AIR`: in calm water, and for a sensor on deck [m]."""
 
 
 def air_notes(depth: Floats, place: Floats) -> list[str]:
     """Return a remark if all depths seem to include atmospheric pressure.
 
     In calm water, all depths then exceed the depths in still water by the equivalent of atmospheric
-    pressure; currents increase this excess. The sensor with the smallest excess decides.
+    pressure. Currents increase this excess, so the smallest excess of all sensors is used.
 
     Parameters
     ----------

@@ -84,7 +84,7 @@ def _top_level(key: str) -> list[FormField]:
 
 
 def part_of_row(file: MooringFile | None, spot: Place | None) -> Piece | Clamp | None:
-    """Return the only piece or clamp of a row; None if the row has several or none."""
+    """Return the piece or clamp of a row; None unless the row has exactly one piece or clamp."""
     found = [part for part in parts_of(file.pieces if file else ()) if part.place.row == spot]
     return found[0] if len(found) == 1 else None
 
@@ -183,7 +183,7 @@ def entered(
 ) -> Draft:
     """Write texts to an entry of a list in the file (see `entry_text`); return the new draft.
 
-    A missing entry is added. An entry that has only its identifying key left is deleted.
+    A missing entry is added. An entry is deleted if only its identifying key remains.
     """
     changed = {
         key: text for key, text in texts.items() if text != entry_text(draft, rows, called, key)
@@ -272,7 +272,7 @@ class Missing:
 
 
 def missing_figures(view: View, draft: Draft) -> list[Missing]:
-    """Return the missing component values that the findings need, in the order of the line."""
+    """Return the component values that findings report as missing, in the order of the line."""
     if view.file is None:
         return []
     wanted: dict[Place, dict[str, None]] = {}
