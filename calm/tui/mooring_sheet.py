@@ -244,10 +244,10 @@ class Missing:
     ----------
     use, kind : id and kind of the component
     labels : labels of the pieces and clamps concerned, as keys of a dict
-    targets : locations in the file to which each missing value is written, by key. If the file
-        defines the component, the location is the definition. Otherwise the locations are all rows
-        that lack the value or, for a part of an assembly, the row of the assembly. There is no
-        location if the row cannot take the value.
+    targets : locations in the file to which each missing value is written, by key. This is the
+        definition of the component, if the file has one. Otherwise these are all rows that lack the
+        value or, for a part of an assembly, the row of the assembly. Rows that cannot hold the
+        value are omitted.
     estimates : estimates for the class of component, by key, as texts without their source
     """
 
