@@ -23,9 +23,9 @@ def page(
     output
         Folder for the page.
     runtime
-        Folder with a Pyodide distribution, xterm.js and xterm.css. CALM copies these files into
-        the page, which then needs no other server. By default the page loads them from the
-        internet.
+        Folder that contains a release of Pyodide, xterm.js and xterm.css. These files are copied
+        into the folder of the page, so that the page needs no other server. By default the page
+        loads them from the internet.
 
     Examples
     --------

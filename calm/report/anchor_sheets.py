@@ -80,7 +80,7 @@ def _instructions(plan: DropPlan) -> Prose:
 def _figures(plan: DropPlan) -> tuple[tuple[str, str], ...]:
     early, late = plan.fall_time_band
     near, far = plan.fall_back_band
-    cube = "assumed as for a cube of equal volume, because `kt` is not set"
+    cube = "assumed (cube of equal volume, because `kt` is not set)"
     given = "as specified" if plan.drag_known else cube
     side = "right" if plan.aside >= 0.0 else "left"
     pull = max(plan.pulls, key=lambda each: each.tension)
@@ -92,7 +92,7 @@ def _figures(plan: DropPlan) -> tuple[tuple[str, str], ...]:
         f"{_distance(near)} to {_distance(far)} {halved}",
         "Lateral offset": f"{_distance(abs(plan.aside))} to the {side}, looking from the release "
         "point towards the float",
-        "Top float at anchor release": f"{_distance(plan.streamed)} astern, towards "
+        "Float astern at anchor release": f"{_distance(plan.streamed)}, towards "
         f"{bearing_text(plan.astern)} true",
         "Release point, from the target": offset_from_target(plan, plan.let_go),
         "Start of the run, from the target": "unknown"
@@ -172,8 +172,8 @@ def _notes(plan: DropPlan) -> tuple[str, ...]:
     notes = [
         "Inertia is neglected, so the first 20 s, the touchdown transient and waves are not "
         "represented.",
-        "± is the numerical error: twice the change of the result if the segments and time steps "
-        "are doubled in number. The current and the drag of the anchor are less certain.",
+        "± is the numerical error: twice the change if segments and time steps are made twice as "
+        "long. The current and the drag of the anchor are less certain.",
     ]
     if plan.rest_difference is not None:
         notes.append(

@@ -168,7 +168,7 @@ _CODES = {"L": "launch", "R": "rise", "B": "break", "w": "in waves"}
 
 
 def _title(finding: Finding) -> str:
-    return RULES[finding.rule].title.lower().replace(" during ", ", ")
+    return RULES[finding.rule].title.lower().replace(" in the ", ", ")
 
 
 def _rows(every: Sequence[Finding]) -> tuple[list[Finding], list[Finding]]:

@@ -206,7 +206,10 @@ def _index(draft: Draft, rows: Location, called: tuple[str, str]) -> int | None:
     return next((i for i, one in entries if isinstance(one, dict) and called in one.items()), None)
 
 
-_ELSEWHERE = "part of a catalogue assembly: use its parts, or define it in the file (o)"
+_ELSEWHERE = (
+    "this component is part of an assembly from the catalogue. To enter its values, put the parts "
+    "of the assembly in the line instead, or define the component in the file (key o)"
+)
 PENDING = "Launch, recovery, break and wave checks are still running."
 _SOURCE = "data sheet, test certificate …"
 
