@@ -31,7 +31,7 @@ from calm.motion.suspects import Suspect, line_suspects
 from calm.motion.unknown_currents import SEABED, unknown_state
 from calm.physics.line import Floats
 
-# odds above which a fault is reported without measured currents: the line may be the cause instead
+# odds above which a fault is reported if no currents were measured, as the line may be the cause
 LIKELY_ALONE = 1000.0
 MOST = 8  # maximum number of faults
 CLOCKS, FURTHEST = 0.01, 13.0  # probability of a wrong clock, and the maximum lag searched [h]
@@ -60,7 +60,7 @@ class _Found:
     value: float  # size of the last fault
     deviation: float  # standard deviation of this size
     left: Floats  # (n, s) residuals [m]
-    # (n,) derivative of the log-likelihood of each time by the size of the last fault
+    # (n,) derivative of the log-likelihood of each time with respect to the size of the last fault
     pulls: Floats
 
 
@@ -68,7 +68,7 @@ Weighed = list[tuple[Suspect, float]]
 
 
 def diagnosed(task: Task) -> tuple[Fault, ...]:
-    """Return the likely faults of sensors, currents and line, unless the task has them already."""
+    """Return the faults of the task, or else diagnose faults of sensors, currents and line."""
     if task.faults is not None:
         return task.faults
     law, causes = law_near(task)
@@ -80,7 +80,7 @@ def diagnosed(task: Task) -> tuple[Fault, ...]:
 def law_near(task: Task) -> tuple[LinearLaw | None, list[Suspect]]:
     """Return the linear model of the readings, and possible faults of line and currents.
 
-    There is no model without measurements, and there are no such faults of inferred currents.
+    The model is None if there are no measurements. If currents are inferred, the list is empty.
     """
     times = chosen_times(task.measured, task.smoother is None)
     if not len(times):
@@ -132,8 +132,8 @@ class Diagnosis:
     def _at(self, late: float) -> Floats:
         """Return (n, s) depths read by the sensors `late` hours after each time [m].
 
-        Interpolation takes the slope and a quarter of the curvature. It neither amplifies nor
-        smooths noise; either would by itself favour a clock error.
+        The interpolation uses the whole slope, but a quarter of the curvature, so that it neither
+        amplifies nor smooths noise. Amplified or smoothed noise would itself favour a clock error.
         """
         whole = round(late / self.step) if self.step > 0.0 else 0
         part = late / self.step - whole if self.step > 0.0 else 0.0
@@ -197,7 +197,7 @@ class Diagnosis:
     def fitted(self, taken: list[Suspect], last: Suspect | None, alike: float) -> _Found:
         """Fit the sizes of the faults `taken` and `last`; compute the likelihood of the pressures.
 
-        Errors are shared by `alike` successive times.
+        Each error persists for `alike` successive times.
         """
         whole = taken if last is None else [*taken, last]
         free = [one for one in whole if one.wide]
@@ -250,7 +250,7 @@ class Diagnosis:
         for j, label in enumerate(self.label):
             mine = sensors == j
             codes = dict.fromkeys(common_unknowns.RAMPS, "drift")
-            # inferred currents adapt to the zero of a sensor
+            # inferred currents would absorb the offset of a sensor
             if not self.alone:
                 codes |= dict.fromkeys((0, common_unknowns.MISHUNG), "offset")
             if slips[j]:

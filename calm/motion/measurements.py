@@ -27,7 +27,7 @@ MOST_TIMES = 500  # maximum number of times for the common unknowns, spread even
 
 Times = NDArray[np.datetime64]
 
-FREE = -1  # index for a level without a point or a sensor
+FREE = -1  # index, instead of a point, for a level that is not on the line
 
 
 @dataclass(frozen=True)
@@ -112,9 +112,10 @@ def common_times(
 ) -> Times:
     """Choose the common times of all measurements.
 
-    The times of the first current record, or of the first sensor if there is none, are extended by
-    those of the others that are more than half the median time step away. Of several added readings
-    within a quarter of the step (a burst), only the first is used.
+    The first times are those of the first current record, or of the first sensor if there are no
+    currents. A time of another record is added if it is more than half the median time step away
+    from all times before it was added. Of several added times within a quarter of the step (a
+    burst), only the first is used.
     """
     everything: list[CurrentMeasurements | InstrumentSeries] = [*currents, *sensors]
     times = everything[0].time
@@ -154,14 +155,14 @@ def interpolated(time: Times, value: Floats, wanted: Times, gap: np.timedelta64)
 
 
 def _measured_at(one: InstrumentSeries, wanted: Times, gap: np.timedelta64) -> Floats:
-    """Interpolate depths to other times; a reading at exactly that time is used even if missing."""
+    """Interpolate depths to the times `wanted`; a missing reading at such a time stays missing."""
     at = np.minimum(np.searchsorted(one.time, wanted), len(one.time) - 1)
     between = interpolated(one.time, one.value, wanted, gap)
     return np.where(one.time[at] == wanted, one.value[at], between)
 
 
-FAR_NEIGHBOURS = 4.0  # maximum steps between the readings before and after a time
-SPIKE, ALIKE = 6.0, 3.0  # deviations of a spike, and limit for all other sensors
+FAR_NEIGHBOURS = 4.0  # maximum interval between the readings before and after a time, in time steps
+SPIKE, ALIKE = 6.0, 3.0  # least deviation of a spike, and limit for others, in usual deviations
 
 
 def without_spikes(
@@ -224,9 +225,9 @@ def joined(
 ) -> MooringMeasurements:
     """Combine all measurements on common times, with levels and sensors from the top down.
 
-    Each sensor has one of `points`, whose labels and depths in still water [m] are `labels` and
-    `still`. Values are interpolated over gaps of at most `gap`. The heights [m] of `sea_level` may
-    have any datum.
+    `points` are the indices of the points of the sensors; `labels` and `still` are the labels and
+    the depths in still water [m] of all points. Values are interpolated over gaps of at most `gap`.
+    The heights [m] of `sea_level` may have any datum.
     """
     time = common_times(currents, sensors)
     order = np.argsort([still[point] for point in points], kind="stable")
