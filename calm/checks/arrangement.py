@@ -416,13 +416,13 @@ def _lift(part: JudgedPart, leg: Leg, density: float) -> float:
 
 def _verdict(part: JudgedPart, pull: float, when: str) -> Verdict:
     grip, breaking = part.component.grip, part.component.breaking_load
-    load = f"Load on the clamp of {part.label}{when} is {say('load', pull)}"
+    load = f"The load on the clamp of {part.label}{when} is {say('load', pull)}"
     if grip is not None:
-        message = f"{load}; its grip is {say('load', grip)}."
+        message = f"{load}; the grip of the clamp is {say('load', grip)}."
         return at_most(part, pull, grip, message, _HOLDS)
     if breaking is not None:
-        message = f"{load}; its breaking load is {say('load', breaking)}."
+        message = f"{load}; the breaking load of the clamp is {say('load', breaking)}."
         return at_most(part, pull, breaking, message, _HOLDS)
-    message = f"{load}; its `grip` is unknown."
+    message = f"{load}; the `grip` of the clamp is unknown."
     not_judged = verdict_on(part, State.NOT_JUDGED, message, value=pull)
     return not_judged.but(lacks=Lack(part.label, "grip"))

@@ -260,8 +260,9 @@ def _of_a_rope(rope: Cable) -> Iterator[str]:
         LOOSEST * lift <= _displaced(rope, rope.mass) <= NOMINAL * lift
     ):
         yield (
-            f"weighs {rope.mass:.4g} kg/m in air and {-net:.4g} N/m in water; the difference "
-            f"should be near {lift / ROPE_ROUNDING:.4g} N/m, the weight of the displaced water"
+            f"weighs {rope.mass * STANDARD_GRAVITY:.4g} N/m in air and {-net:.4g} N/m in water; "
+            f"the difference should be near {lift / ROPE_ROUNDING:.4g} N/m, the weight of the "
+            "water that the rope displaces"
         )
     else:
         yield from density_out_of_bounds(rope)

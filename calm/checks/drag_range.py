@@ -70,7 +70,7 @@ def _effect(result: LegResult, fast: set[int]) -> tuple[str, bool]:
     if result.type != "surface" and down is not None and then is not None:
         name, before, after = "knockdown", down, then
     changed = f"{say(name, after)} instead of {say(name, before)}"
-    effect = f" With the drag curve of a smooth shape, the {name} is {changed}."
+    effect = f" With the drag curve of a smooth shape, the {name} would be {changed}."
     return effect, after > NOTICED * before
 
 

@@ -151,8 +151,8 @@ def launch_speed(handling: Handling) -> Iterator[Verdict]:
     anchor, speed = handling.leg.file.pieces[-1], launch.fall_speed
     slow, fast = (QUANTITIES["speed"].format(one) for one in launch.fall_speed_band)
     message = (
-        f"Touchdown speed of the anchor is {say('speed', speed)} ({slow} to {fast} with twice and "
-        f"half the drag); the limit is {GREATEST_TOUCHDOWN_SPEED:g} m/s."
+        f"Touchdown speed of the anchor is {say('speed', speed)} ({slow} to {fast} if the drag is "
+        f"doubled or halved); the limit is {GREATEST_TOUCHDOWN_SPEED:g} m/s."
     )
     remedy = "Lower the anchor, or add drag with a parachute or a wider anchor."
     if launch.anchor_drag_known:
@@ -160,8 +160,8 @@ def launch_speed(handling: Handling) -> Iterator[Verdict]:
         yield at_most(anchor, speed, limit, message, remedy, State.WARN)
         return
     message += (
-        " The drag of the anchor is unknown; it is assumed to be that of a cube of the same "
-        f"volume. Without drag on the anchor, the speed is {say('speed', launch.greatest_speed)}."
+        " The drag of the anchor is unknown; CALM uses the drag of a cube with the same volume. "
+        f"Without any anchor drag, the speed would be {say('speed', launch.greatest_speed)}."
     )
     if launch.greatest_speed <= GREATEST_TOUCHDOWN_SPEED:
         yield at_most(anchor, speed, GREATEST_TOUCHDOWN_SPEED, message, remedy, State.WARN)

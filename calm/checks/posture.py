@@ -234,7 +234,10 @@ def fish_bite(result: LegResult) -> Iterator[Verdict]:
                 f"{piece.label} begins at {say('depth', highest)}; rope above "
                 f"{say('depth', limit)} is exposed to fish bite."
             )
-            remedy = "Use jacketed wire above that depth, or set the `fishbite_depth` of the site."
+            remedy = (
+                f"Use jacketed wire above {say('depth', limit)}, or set the `fishbite_depth` of "
+                "the site."
+            )
             source = cited(result.file, "fishbite_depth")
             yield at_least(piece, highest, limit, message, remedy, State.WARN, source)
 

@@ -103,8 +103,8 @@ class Cable(Flexible):
         "true for a wire rope that does not rotate under load", True
     )
     elongation: Elongation | None = optional(
-        "pairs of load and strain, with the load as a fraction of the breaking load, "
-        "e.g. [[0.1, 0.03], [0.3, 0.08]]",
+        "rows of two numbers: the load as a fraction of the breaking load, then the strain at "
+        "that load, e.g. [[0.1, 0.03], [0.3, 0.08]]",
         [[0.05, 0.05], [0.1, 0.08], [0.2, 0.12]],
     )
     dynamic_stiffness: definition.PositiveForce = optional(

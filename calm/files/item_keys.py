@@ -54,7 +54,7 @@ class Equipment(definition.Model):
         return listed_serials(self.serial)
 
     def of(self, repeat: int, items: int) -> Equipment:
-        """Return the equipment of one piece that an item of the line produces.
+        """Return the equipment of one of the pieces that an item of the line produces.
 
         Parameters
         ----------

@@ -94,12 +94,12 @@ def assign_instruments(path: Path, list_of_instruments: Path) -> AssignedInstrum
                 f"{one.where}: {name} is {abs(one.nominal - still):.0f} m from its nominal depth"
             )
     if timeless:
-        when = "" if date is None else f", which must be after the deployment ({date})"
+        when = "" if date is None else f"; this time must be after the deployment ({date})"
         doubts.append(
-            f"{list_of_instruments.name}: clock offsets of {len(timeless)} of {len(listed)} "
-            "instruments are only reported and do not correct the times; to correct them, add a "
-            "column `clock checked` with "
-            f"the time of the comparison{when}"
+            f"{list_of_instruments.name}: for {len(timeless)} of {len(listed)} instruments the "
+            "clock offset is reported, but the times are not corrected for it. To correct them, "
+            "add a column `clock checked` with the time at which the clock was compared with true "
+            f"time{when}"
         )
     kept = [row for row in rows.values() if len(row) > 1]
     try:

@@ -167,7 +167,10 @@ def read_sea_level(path: Path) -> tuple[NDArray[np.datetime64], Floats]:
     if path.is_file() and not cf_files.holds_arrays(path):
         table = read_time_columns(path, ("length",), "level[m]")
         if len(table.names) != 1:
-            message = "has several columns; only one is allowed: `time,level[m]`"
+            message = (
+                "has several data columns; only one is allowed besides the time, e.g. "
+                "`time,level[m]`"
+            )
             raise InputError([Problem(str(path), 1, 1, message)])
         time, level = table.time, table.values[:, 0]
     else:

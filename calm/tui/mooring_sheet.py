@@ -206,7 +206,10 @@ def _index(draft: Draft, rows: Location, called: tuple[str, str]) -> int | None:
     return next((i for i, one in entries if isinstance(one, dict) and called in one.items()), None)
 
 
-_ELSEWHERE = "part of a catalogue assembly: use its parts, or define it in the file (o)"
+_ELSEWHERE = (
+    "this component is part of an assembly from the catalogue. To enter its values, put the parts "
+    "of the assembly in the line instead, or define the component in the file (key o)"
+)
 PENDING = "Launch, recovery, break and wave checks are still running."
 _SOURCE = "data sheet, test certificate …"
 
@@ -241,10 +244,10 @@ class Missing:
     ----------
     use, kind : id and kind of the component
     labels : labels of the pieces and clamps concerned, as keys of a dict
-    targets : locations in the file to which each missing value is written, by key. If the file
-        defines the component, the location is the definition. Otherwise the locations are all rows
-        that lack the value or, for a part of an assembly, the row of the assembly. There is no
-        location if the row cannot take the value.
+    targets : locations in the file to which each missing value is written, by key. This is the
+        definition of the component, if the file has one. Otherwise these are all rows that lack the
+        value or, for a part of an assembly, the row of the assembly. Rows that cannot hold the
+        value are omitted.
     estimates : estimates for the class of component, by key, as texts without their source
     """
 

@@ -39,7 +39,7 @@ class Page:
         return node
 
     def put(self, location: Location, value: Value) -> list[Patch]:
-        """Return the patches that set the value at a location; missing mappings above are added."""
+        """Return the patches that set a value at a location, and add missing parent mappings."""
         outer: Node | None = None
         node = self.root
         for depth, step in enumerate(location):

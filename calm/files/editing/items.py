@@ -54,7 +54,7 @@ class LineLists:
 
     @property
     def legs(self) -> list[str]:
-        """Name of each item's leg, by line index; names are empty if the file has a single line."""
+        """Name of the leg of each item; empty if the file describes a single mooring line."""
         names = [(str(rows[1]) if len(rows) > 1 else "", count) for rows, count in self.all]
         return [name for name, count in names for _ in range(count)]
 

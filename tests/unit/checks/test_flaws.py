@@ -643,7 +643,7 @@ FLAWS = (
         "clamp-grip",
         "CTD 900 m",
         "fail",
-        "its grip is 1.00 N",
+        "the grip of the clamp is 1.00 N",
     ),
     Flaw(
         "a wire that winds up its float",

@@ -100,7 +100,7 @@ def test_good_components_pass(good):
         (
             GOOD_ROPE,
             {"weight": "0.2 N/m", "mass": "0.19 kg/m"},
-            "near 0.7895 N/m, the weight of the displaced water",
+            "near 0.7895 N/m, the weight of the water that the rope displaces",
         ),
         (GOOD_ROPE, {"stiffness": "18 MN"}, "stiffness"),
         (GOOD_ROPE, {"breaking_load": "320 kN"}, "a cable of its diameter has at most"),
