@@ -9,8 +9,8 @@ is due to scales below the sensor spacing, and to sensor noise.
 An error in the depth of an instrument causes an error in its values, which equals the depth error
 times the local gradient. This error is added to the standard deviation of the result without
 averaging over instruments, because it may be common to all instruments for the whole record. Half
-of its variance also counts as independent noise of each instrument, which gives more weight to
-instruments of well-known depth.
+the variance of this error also counts as independent noise of each instrument, which gives more
+weight to instruments of well-known depth.
 """
 
 from __future__ import annotations
@@ -259,8 +259,8 @@ def estimate(field: GriddedQuantity, levels: Floats, times: NDArray[np.int64]) -
 def _likeliest(field: GriddedQuantity, times: NDArray[np.int64]) -> Scales:
     """Find the most likely correlation scales, from the samples at some times.
 
-    A weak prior determines scales that the record does not constrain: a quarter of the line, six
-    time steps, and 2 % uncorrelated variance. The standard deviation of the prior is a factor of
+    A weak prior determines scales that the record does not constrain. Its medians are a quarter of
+    the line, six time steps, and 2 % uncorrelated variance. Its standard deviation is a factor of
     about five for each scale.
     """
     from scipy.optimize import minimize

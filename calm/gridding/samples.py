@@ -136,8 +136,8 @@ def gather(
 ) -> Samples:
     """Average the values around each time (n,), and the depths at which the values were measured.
 
-    Each value counts for the nearest time, if this time is within half a time step. `points`
-    maps the index of each series to its point on the line.
+    Each value counts for the nearest time, if this time is within half a time step. `points` maps
+    the index of each series to its point on the line.
     """
     still = depths.places.still
     each = [(at, series[i].below) for i, at in points.items()]

@@ -19,7 +19,8 @@ from calm.motion.matching import CERTAIN, in_order, named_point, places_of
 from calm.records.current_terms import parse_time, time_text
 from calm.records.instrument_series import Identity
 
-# least reported difference of nominal and still-water depth: share of the depth, and metres
+# difference of nominal and still-water depth that is reported: share of the depth, and metres;
+# the larger one counts
 ASTRAY = 0.02, 5.0
 _ITEMS = ("deployed", "items")
 

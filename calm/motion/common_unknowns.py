@@ -24,7 +24,7 @@ REACH = 5.0  # least distance from a sensor to the points that determine the slo
 class Common:
     """Estimate of the q unknowns common to a whole record.
 
-    These are, in this order, the logarithms of the factors, the datum [m] and the offsets [m].
+    The unknowns are, in order, the logarithms of the factors, the datum [m] and the offsets [m].
     """
 
     factors: Mapping[str, float]  # names of the estimated factors and their values
@@ -125,7 +125,7 @@ class LinearLaw:
     time: NDArray[np.datetime64]  # (n,) times
     share: Floats  # (n,) share of the record that has elapsed, 0 to 1
     known: NDArray[np.bool_]  # (n, s) whether a reading exists
-    raw: Floats  # (n, s) measured minus computed depths [m], with all unknowns zero
+    raw: Floats  # (n, s) measured minus computed depths [m] if all unknowns are zero
     left: Floats  # (n, s) as `raw`, but with the unknowns at the state of linearisation
     expected: Floats  # (n, s, s) expected covariance of `left` [m²]
     fixed: Floats  # (n, s, q) derivatives of the readings with respect to the unknowns of `Common`

@@ -22,7 +22,7 @@ class ReadCurrents:
 class Linear:
     """Depths of the points, linearised about a state of the currents."""
 
-    logs: Floats  # (n, g) logarithms of the factors on the currents, which are the state
+    logs: Floats  # (n, g) the state: logarithms of the factors on the currents
     depth: Floats  # (n, p) depths at the state [m]
     slope: Floats  # (n, p, g) derivatives of the depths with respect to the state
     common: Floats  # (n, p, f) derivatives with respect to the logarithms of the common factors

@@ -36,7 +36,7 @@ LIKELY_ALONE = 1000.0
 MOST = 8  # maximum number of faults
 CLOCKS, FURTHEST = 0.01, 13.0  # probability of a wrong clock, and the maximum lag searched [h]
 GAIN = 0.02  # prior deviation of a gain
-GAINS, ALL_GAINS = 0.01, 0.001  # probability of a wrong gain in one sensor, and in all
+GAINS, ALL_GAINS = 0.01, 0.001  # probability of a wrong gain of one sensor, and of all
 LEAST = {
     "moved": 3.0, "clock": 0.08, "gain": 0.003, "offset": 2.5, "drift": 1.0, "slip": 1.5,
     "currents": 0.1, "buoyancy": 0.06, "length": 0.004, "drag": 0.3,

@@ -327,9 +327,9 @@ def _describe(
 ) -> None:
     """Add global attributes on depths and mooring, and a line in the history.
 
-    Attributes of the original file are kept, except for the range of depths. An attribute
-    is added only if no attribute of the original file begins with the same word, such as `creator`
-    in `creator_name`.
+    Attributes of the original file are kept, except for the range of depths. An attribute is added
+    only if no attribute of the original file begins with the same word, such as `creator` in
+    `creator_name`.
     """
     name, _, mark = instruments.names
     mooring = _mooring(result)

@@ -16,8 +16,8 @@ from calm.motion.currents_law import Linear, ReadCurrents
 from calm.motion.measurements import MooringMeasurements
 from calm.physics.line import Floats, Line
 
-STEP = 0.05  # step of the logarithms for numerical derivatives
-UNMEASURED = 1e4  # deviation of the reading of a sensor without a measurement [m]
+STEP = 0.05  # step in a logarithm for numerical derivatives
+UNMEASURED = 1e4  # standard deviation assigned to a missing reading [m]
 
 
 class LineResponse:

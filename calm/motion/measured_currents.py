@@ -29,7 +29,7 @@ from calm.motion.measurements import FREE, MooringMeasurements, chosen_times, ne
 from calm.motion.smoother import BLOCK, StateSpace, smoothed
 from calm.physics.line import Floats
 
-TURNS, ENOUGH = 20, 0.05  # most Gauss-Newton steps, and the change in depth that ends them [m]
+TURNS, ENOUGH = 20, 0.05  # maximum number of steps, and change in depth that ends them [m]
 PLACED = (1, 3, 5, 8, 11)  # steps after which the factors are updated
 # step in the logarithm of a factor for its slopes, which are renewed after a larger change
 FACTOR_STEP = 0.05
@@ -38,7 +38,7 @@ LONGEST = 0.5  # maximum change in a current in one step [m/s]
 
 MOST_LEVELS, KNOTS = 8, 12  # maximum number of levels that are all knots, and knots for more levels
 APART = 2.0  # distance below which levels share a knot [m]
-ABOVE = 5.0  # height of a knot above the top of a line that extends above the levels [m]
+ABOVE = 5.0  # height of a knot above the top of the line, if the top is above all levels [m]
 BELOW = 20.0  # distance from lowest level to seabed above which a knot is added half-way [m]
 
 # error of a current meter: constant part [m/s] and share of the speed; `FLAGGED` multiplies both
@@ -71,7 +71,7 @@ STEP = 0.02
 # prior deviation of a place is 2 cm. The variance of a place begins at 1 m², and shrinks unless the
 # place exceeds four deviations
 TAILS = {"datum": 1.0 / 2.0, "place": 1.0 / 5.0}
-ZEROS = 2.0  # variance of Student's law with four degrees of freedom over that of a normal law
+ZEROS = 2.0  # ratio of the variance of Student's law, with four degrees of freedom, to a normal law
 SETTLED = 6  # iterations before the line error is estimated; it would otherwise absorb sensor steps
 LONGER = 30.0  # maximum factor by which a step of the line error is lengthened
 FURTHEST = 0.7  # maximum logarithm of a factor
@@ -104,9 +104,9 @@ class Knots:
 def knots_of(place: Floats, top: float, seabed: float) -> Knots:
     """Choose the knots for levels of measured current.
 
-    If there are few levels, each is a knot. A knot may be added above the top of the line, and
-    another below the lowest level. `place` (k,) are the depths of the levels in still water [m],
-    in any order.
+    `place` (k,) are the depths of the levels in still water [m], in any order. If there are few
+    levels, each is a knot. A knot may be added above the top of the line, and another below the
+    lowest level.
     """
     order = np.argsort(place, kind="stable")
     chosen: list[int] = []

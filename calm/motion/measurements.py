@@ -113,9 +113,9 @@ def common_times(
     """Choose the common times of all measurements.
 
     The first times are those of the first current record, or of the first sensor if there are no
-    currents. A time of another record is added if it is more than half the median time step away
-    from all times before it was added. Of several added times within a quarter of the step (a
-    burst), only the first is used.
+    currents. Each other record adds the times that are more than half the median time step away
+    from all times chosen so far. Of several added times within a quarter of the step (a burst),
+    only the first is used.
     """
     everything: list[CurrentMeasurements | InstrumentSeries] = [*currents, *sensors]
     times = everything[0].time
@@ -203,7 +203,8 @@ def exclude_readings(
 ) -> tuple[MooringMeasurements, list[tuple[str, int, float, str]]]:
     """Remove the readings that `wrong` (n, s) marks.
 
-    Also return the label, number of readings, and first depth [m] and time of each such sensor.
+    Also return, for each sensor with such readings, the label, the number of these readings, and
+    the depth [m] and the time of the first.
     """
     first = [(j, at) for j, at in enumerate(wrong.argmax(axis=0).tolist()) if wrong[at, j]]
     counts, time = wrong.sum(axis=0).tolist(), np.datetime_as_string(measured.time, "s")

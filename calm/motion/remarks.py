@@ -22,8 +22,8 @@ OF_LINE = ("currents", "buoyancy", "length", "drag", "fouling")
 LIKELY = 20.0  # odds above which a fault is reported
 FAR_OFFSET = 2.5  # least offset of all sensors that is reported, in prior standard deviations
 FAR_DATUM = 10.0  # offset of all sensors that is always reported [m]
-# error in length above which it is reported if currents were not measured, in prior deviations;
-# inferred currents absorb much of an error in length
+# least error in length that is reported if no currents were measured, in prior deviations;
+# inferred currents absorb much of such an error
 FAR_LENGTH = 5.0
 FAR_FACTOR = 3.0  # deviations of a drag factor from 1 above which it absorbs another error
 WORST = 0.3  # share of the knockdown above which the error of the line is reported

@@ -197,7 +197,7 @@ def read_sea_level(path: Path) -> tuple[NDArray[np.datetime64], Floats]:
 
 
 CONSTANT = 1e-6  # range of depths up to which a sensor counts as constant [m]
-MISPLACED = 20.0  # tolerance for the shallowest depth against still water [m]; or a factor of two
+MISPLACED = 20.0  # tolerance of the shallowest depth [m]; a factor of up to two is also tolerated
 UNITS = {"psi for dbar?": 1.45038, "dbar for psi?": 0.68948}  # ratios of such readings to true ones
 ALIKE = 0.03  # relative tolerance of that ratio, doubled for several sensors
 APART = 3.0  # least distance between exchanged sensors [m]

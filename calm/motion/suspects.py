@@ -181,16 +181,16 @@ def torn(
 
 
 EITHER_SIDE = 4  # number of times averaged on either side of a step
-CLEAR = 8.0  # least ratio of the step of the lowest sensor to its usual change
+CLEAR = 8.0  # least ratio of the step of the lowest sensor to the usual change of this sensor
 LEAST_STEP = 3.0  # least size of a step [m]
 
 
 def common_step(measured: MooringMeasurements, still: Floats) -> Fault | None:
     """Find a step common to the depths of all sensors; return None if there is no such step.
 
-    The whole mooring has then moved to another depth. A current lowers the lowest sensor less than
-    the highest, whereas a sinking mooring lowers all equally. The search is for records without
-    measured currents, where inferred currents would otherwise explain the step.
+    Such a step means that the whole mooring has moved to another depth. A current lowers the lowest
+    sensor less than the highest, whereas a sinking mooring lowers all equally. The search is for
+    records without measured currents, because inferred currents would otherwise explain the step.
     """
     whole = np.flatnonzero(np.isfinite(measured.depth).all(axis=1))
     order = np.argsort(still[measured.point], kind="stable")

@@ -6,8 +6,8 @@ mean and covariance are learnt from the record by expectation and maximisation (
 Rubin 1977): each time is fitted by Gauss-Newton steps under the present distribution, which is then
 updated to the mean and covariance of the fits, including their uncertainty. If the pressures do not
 constrain the distribution, it stays at its prior. The line itself also has an error that varies
-smoothly along its length. It is a share of the knockdown, estimated from the pressures as an
-average over several trial values.
+smoothly along its length. This error is a share of the knockdown, estimated from the pressures as
+an average over several trial values.
 
 The fits of the times used for learning are stored. At every other time, the estimate starts from
 the stored fit with the nearest depths.
@@ -38,7 +38,7 @@ SURFACE, DECAY, LEAST = 0.3, 400.0, 0.03
 ALL, EACH, ALIKE = 0.7, 1.4, 0.5
 PRIOR = 20.0  # weight of the prior distribution, as a number of times of the record
 MOST_TIMES = 240  # number of times from which the distribution is learnt
-TURNS, FIRST = 12, 2  # iterations, and the first ones, which leave the distribution unchanged
+TURNS, FIRST = 12, 2  # iterations, of which the first leave the distribution unchanged
 # share of the learning times from which the distribution is updated: those with the largest
 # knockdown, because the tide hides the effect of the currents at the other times
 STRONGER = 0.5
@@ -229,8 +229,8 @@ def learn_currents(
 def raised(mooring: Design, measured: MooringMeasurements) -> float:
     """Return the depth error [m] of the sensor that is farthest above its still-water depth.
 
-    Currents only lower a line, so the water depth, a length or the position in the file is then
-    wrong. The result is negative, or 0 if no sensor is far above its still-water depth.
+    Currents only lower a line, so this error means that the water depth, a length or the position
+    in the file is wrong. It is negative, or 0 if no sensor is far above its still-water depth.
     """
     depth = measured.depth - measured.moved[:, None]
     known = np.isfinite(depth).any(axis=0)
