@@ -160,8 +160,8 @@ RAMPS: Mapping[int, float] = {-2: 1.0, -3: 0.3}  # duration of each drift, as a 
 def moved_by(code: int, fall: Floats, share: Floats) -> Floats:
     """Return the change (n,) in the reading of a sensor per metre of offset, slip or drift.
 
-    The code is 0 for an offset, the index of the time of a slip, `MISHUNG` for a wrong place on the
-    line, or a key of `RAMPS` for a drift; `fall` and `share` are as in `LinearLaw`.
+    The code is 0 for an offset, `MISHUNG` for a wrong place on the line, a key of `RAMPS` for a
+    drift, or the index of a time for a slip at that time. `fall` and `share` are as in `LinearLaw`.
     """
     if code in RAMPS:
         return np.minimum(share / RAMPS[code], 1.0)
@@ -176,7 +176,7 @@ def chance_of(code: int, times: int) -> tuple[float, float]:
 
 
 def step_times(law: LinearLaw, covariance: Floats, columns: Sequence[Floats]) -> list[int]:
-    """Find the most likely start of each of several candidate changes in the readings.
+    """Find the most likely start of each candidate change in the readings.
 
     Each change lasts to the end of the record. One of `columns` (n, s) is the effect of a change of
     1 m on the readings. Each change is fitted jointly with the common unknowns, which have the

@@ -103,7 +103,7 @@ def law_near(task: Task) -> tuple[LinearLaw | None, list[Suspect]]:
 
 
 class Diagnosis:
-    """Search for faults in a record; the likelihood of the pressures decides between faults."""
+    """Search for faults in a record, which are weighed by the likelihood of the pressures."""
 
     def __init__(self, task: Task, law: LinearLaw, causes: Sequence[Suspect] = ()) -> None:
         self.causes = causes
@@ -142,7 +142,7 @@ class Diagnosis:
         return there + np.nan_to_num(bent)
 
     def faults(self) -> tuple[Fault, ...]:
-        """Find the likely faults; the odds of each fault allow for all other likely faults."""
+        """Find the likely faults, with odds that allow for all other likely faults."""
         taken: list[Suspect] = []
         while len(taken) < MOST:
             likely = self.weighed(taken)
@@ -195,7 +195,7 @@ class Diagnosis:
         return self.law.raw + sum(one.shift for one in taken)
 
     def fitted(self, taken: list[Suspect], last: Suspect | None, alike: float) -> _Found:
-        """Fit the sizes of the faults `taken` and `last`; compute the likelihood of the pressures.
+        """Fit the sizes of the faults `taken` and `last`, and return the likelihood of the result.
 
         Each error persists for `alike` successive times.
         """

@@ -54,7 +54,7 @@ _OF_MOTION = ("title", "keywords", "references")  # attributes that describe a m
 
 @dataclass(frozen=True)
 class Instruments:
-    """A file of one or more instruments, to which estimated depths are to be added."""
+    """A file of one or more instruments, which receives the estimated depths."""
 
     path: Path
     clock: str  # name of the time variable
@@ -160,7 +160,7 @@ def write_depths(
     for j, at in enumerate(instruments.point):
         if at is not None:
             depth[:, j], spread[:, j], flag[:, j] = at_own_times(result, at, instruments.time, gap)
-    # raw values, except texts: characters would be split again
+    # read raw values, but join the characters of texts, which xarray splits again to write them
     if engine := cf_files.engine_of(instruments.path):
         with xr.open_dataset(
             instruments.path, engine=engine, mask_and_scale=False, decode_times=False,
@@ -241,7 +241,7 @@ def _drop_references(copy: Dataset) -> None:
 
 
 def _without_depths(copy: Dataset, instruments: Instruments) -> Dataset:
-    """Remove old depth variables from a file of one instrument; rename its nominal depth."""
+    """Remove old depth variables from a file of one instrument, and rename its nominal depth."""
     if instruments.along is not None:
         return copy
     nominal = None

@@ -69,7 +69,7 @@ TIDE_HOURS = 2.4  # time in which the correlation of a semidiurnal tide falls to
 STEP = 0.02
 # weight 1 / (1 + n) of the square of an unknown in its variance, for n degrees of freedom. The
 # prior deviation of a place is 2 cm. The variance of a place begins at 1 m², and shrinks unless the
-# place exceeds four deviations
+# place exceeds four standard deviations of the error of its estimate
 TAILS = {"datum": 1.0 / 2.0, "place": 1.0 / 5.0}
 ZEROS = 2.0  # ratio of the variance of Student's law, with four degrees of freedom, to a normal law
 SETTLED = 6  # iterations before the line error is estimated; it would otherwise absorb sensor steps
@@ -262,7 +262,7 @@ class CurrentSmoother:
         return self._forwards[key]
 
     def linear(self) -> Floats:
-        """Return depths (n, p) of the points [m], and renew slopes where the state has changed."""
+        """Return depths (n, p) of the points [m], and renew the slopes of changed states."""
         now, factor = self.state[:, self.columns.current], self.factor
         far = np.abs(now - self._slopes_at).max(axis=1) > STALE
         far |= (np.abs(factor - self._slopes_factor) > FACTOR_STEP).any()

@@ -50,7 +50,7 @@ class Fault:
 
     @property
     def size(self) -> float:
-        """Size of the fault, 0 if there is none; for faults of the line, the log of `value`."""
+        """Size of the fault: 0 without a fault; the logarithm of `value` for `OF_LINE`."""
         if self.kind in OF_LINE:
             return float(np.log(self.value))
         return self.value - (self.kind == "gain")

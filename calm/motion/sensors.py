@@ -209,12 +209,12 @@ def plausible(
 ) -> tuple[InstrumentSeries, list[str]]:
     """Remove implausible readings from a sensor, and return notes about the removal.
 
-    A reading is implausible if it is far shallower than `place`, the depth of the sensor in still
-    water [m], such as a reading on deck or a fill value; if it is far below the seabed [m]; or if
-    the sensor is stuck. Only the first of several readings at the same time is kept. Depths are
-    corrected if the readings on deck show that the pressures are absolute. If most readings are too
-    shallow or too deep, they are kept, because the sensor itself is wrong; `unusable` then reports
-    the sensor.
+    Three kinds of readings are implausible: readings far shallower than `place`, the depth of the
+    sensor in still water [m] (readings on deck, or fill values); readings far below the seabed [m];
+    and readings of a stuck sensor. Only the first of several readings at the same time is kept.
+    Depths are corrected if the readings on deck show that the pressures are absolute. If most
+    readings are too shallow or too deep, all are kept, because the sensor itself is wrong;
+    `unusable` then reports the sensor.
     """
     notes = []
     again = np.zeros(len(sensor.time), bool)

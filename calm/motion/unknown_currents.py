@@ -3,11 +3,11 @@
 The unknowns at each time are the speeds at a few depths (knots). All knots share one direction,
 which has no effect on the depths. The logarithms of the speeds have a normal distribution, whose
 mean and covariance are learnt from the record by expectation and maximisation (Dempster, Laird and
-Rubin 1977): each time is fitted by Gauss-Newton steps under the present distribution, which is then
-updated to the mean and covariance of the fits, including their uncertainty. If the pressures do not
-constrain the distribution, it stays at its prior. The line itself also has an error that varies
-smoothly along its length. This error is a share of the knockdown, estimated from the pressures as
-an average over several trial values.
+Rubin 1977). Each time is fitted by Gauss-Newton steps under the present distribution. The
+distribution is then updated to the mean and covariance of the fits, including their uncertainty. If
+the pressures do not constrain the distribution, it stays at its prior. The line itself also has an
+error that varies smoothly along its length. This error is a share of the knockdown, estimated from
+the pressures as an average over several trial values.
 
 The fits of the times used for learning are stored. At every other time, the estimate starts from
 the stored fit with the nearest depths.
