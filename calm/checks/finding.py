@@ -176,6 +176,7 @@ class Verdict:
     lacks : component value that the rule requires but the file lacks; None if none is missing
     missing : missing value with the rules and pieces that need it, for the rule `missing` only
     case : code of the load case; None for the code of the environment and situation
+    figure : key of the component value that sets the limit, for a rule that uses several; else ""
     """
 
     component: str | None
@@ -190,6 +191,7 @@ class Verdict:
     lacks: Lack | None = None
     missing: MissingFigure | None = None
     case: str | None = None
+    figure: str = ""
 
     def but(self, **changed: Any) -> Self:
         """Return a copy of the verdict with changed fields."""
@@ -250,16 +252,17 @@ def at_most(
     source: str = "",
     *,
     least: bool = False,
+    figure: str = "",
 ) -> Verdict:
     """Create the verdict on a value with a limit.
 
     The limit is an upper limit, or a lower limit if `least` is true. `beyond` is the state of the
-    verdict if the value violates the limit.
+    verdict if the value violates the limit. `figure` is as in `Verdict`.
     """
     sense: Sense = ">=" if least else "<="
     keeps = value >= limit if least else value <= limit
     state, advice = (State.PASS, None) if keeps else (beyond, remedy)
-    return verdict_on(part, state, message, advice, value, limit, sense, source)
+    return verdict_on(part, state, message, advice, value, limit, sense, source, figure)
 
 
 at_least = partial(at_most, least=True)
@@ -296,10 +299,11 @@ def verdict_on(
     limit: float | None = None,
     sense: Sense | None = None,
     source: str = "",
+    figure: str = "",
 ) -> Verdict:
     """Create a verdict on a part of the line, or on the whole mooring if `part` is None."""
     label, place = (None, None) if part is None else (part.label, part.place)
-    return Verdict(label, value, limit, sense, state, message, remedy, place, source)
+    return Verdict(label, value, limit, sense, state, message, remedy, place, source, figure=figure)
 
 
 @dataclass(frozen=True)
