@@ -16,7 +16,7 @@ from multiprocessing import parent_process
 from pathlib import Path
 from subprocess import DEVNULL, Popen
 
-from calm.physics.compiled import cache_folder, is_cached
+from calm.physics.compiled import cache_folder, fault, is_cached
 from calm.physics.line import Line
 from calm.solve.solution import Settings
 
@@ -91,7 +91,7 @@ def runs_compiled(
     if settings.compiled is not None:
         return settings.compiled
     if not _may_choose():
-        return os.environ.get("CALM_COMPILED") == "always" and _has_llvm()
+        return os.environ.get("CALM_COMPILED") == "always" and may_compile()
     if line is not None:
         pieces = len(line.length) + len(line.clamp_piece)
         count_lines(1.0, solver, max(pieces / TYPICAL_PARTS, 1.0))
@@ -115,7 +115,7 @@ def count_lines(lines: float, solver: CompiledPart, work: float | None = None) -
 
 def may_compile() -> bool:
     """Return whether a function that belongs to no `CompiledPart` may be compiled on first use."""
-    return os.environ.get("CALM_COMPILED") != "never" and _has_llvm()
+    return os.environ.get("CALM_COMPILED") != "never" and _has_llvm() and fault() is None
 
 
 def _may_choose() -> bool:
@@ -132,7 +132,7 @@ def _compile_ahead(solver: CompiledPart) -> "Popen[bytes] | None":
 
     The child process may outlive this process, so the two share no stream.
     """
-    if cache_folder() is None or not sys.executable:
+    if cache_folder() is None or fault() is not None or not sys.executable:
         return None
     package = str(Path(__file__).parents[2])
     path = os.pathsep.join(filter(None, [package, os.environ.get("PYTHONPATH")]))
