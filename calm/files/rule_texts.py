@@ -64,7 +64,8 @@ RULES = {
         "opposite to both its neighbours, a current that increases down to the seabed or exceeds "
         "any current of deep water, a density that no sea has, tides of more than 20 m, wind of "
         "more than 75 m/s; levels of a storm weaker than half of the ordinary current; no `wind` "
-        "although a surface float has a `wind_area`",
+        "although a surface float has a `wind_area`; fresh or brackish water in which the "
+        "buoyancy of a float without `mass` and `volume` is too high",
         "a warning",
         "CALM's own limits, from ranges found at sea and common typing errors",
         "environments are compared with each other, by `calm check`"),

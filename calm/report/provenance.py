@@ -103,12 +103,15 @@ def canonical(value: Any) -> str:
 
 
 def _object(one: Any) -> dict[str, Any]:
+    known: dict[str, Any]
     if isinstance(one, BaseModel):
-        return one.model_dump()
-    if not is_dataclass(one):
-        return vars(one)
-    # a field that a comparison omits, such as the path of a record, is no input
-    return {each.name: getattr(one, each.name) for each in fields(one) if each.compare}
+        known = one.model_dump()
+    elif is_dataclass(one):
+        # a field that a comparison omits, such as the path of a record, is no input
+        known = {each.name: getattr(one, each.name) for each in fields(one) if each.compare}
+    else:
+        known = vars(one)
+    return known
 
 
 _ALSO_EXCLUDED = (

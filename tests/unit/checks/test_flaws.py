@@ -532,6 +532,19 @@ FLAWS = (
         "its breaking load of 6.00 kN divided by 3 allows 2.00 kN",
     ),
     Flaw(
+        "a lake, in which floats have less buoyancy",
+        CDMS,
+        (
+            ("[0, 1024]", "[0, 1000]"),
+            ("[200, 1025]", "[200, 1000]"),
+            ("[525, 1026]", "[525, 1000]"),
+        ),
+        "environment",
+        "sphere",
+        "warn",
+        "the displaced water weighs 2.4 % less",
+    ),
+    Flaw(
         "a sub-surface line without a release",
         CDMS,
         (("    role: release\n", ""),),
