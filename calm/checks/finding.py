@@ -222,10 +222,14 @@ class Verdict:
         return demand / capacity if capacity > 0.0 else inf
 
     @property
-    def rank(self) -> tuple[int, float]:
-        """Sort key that puts the worst verdict first: by state, then by utilisation."""
-        used = self.utilisation
-        return -self.state.severity, inf if used is None else -used
+    def rank(self) -> tuple[int, float, float]:
+        """Sort key that puts the worst verdict first: by state, then by utilisation, and without a
+        utilisation by margin.
+        """
+        used, margin = self.utilisation, self.margin
+        if used is not None:
+            return -self.state.severity, -used, 0.0
+        return -self.state.severity, inf, 0.0 if margin is None else margin
 
 
 def no_capacity(verdict: Verdict) -> bool:

@@ -1,11 +1,13 @@
 """How many findings a verdict counts: a cluster of equal floats is one, unlike pieces are not."""
 
+from dataclasses import replace
+
 import pytest
 
-from calm.checks.finding import Finding, State
+from calm.checks.finding import Finding, State, governing
 from calm.files import Place
 from calm.report.check_tables import counted_states
-from calm.report.open_items import verdict_of
+from calm.report.open_items import _extreme, verdict_of
 
 
 def _finding(component: str, place: Place, state: State = State.FAIL, **others: str) -> Finding:
@@ -47,3 +49,12 @@ def test_an_anchor_that_slides_is_one_failure_with_and_without_capacity() -> Non
     nothing = _finding("anchor", Place(9), rule="anchor-sliding", message="nothing holds it")
     weight = _finding("anchor", Place(9), rule="anchor-weight", message="it is too light")
     assert verdict_of([sliding, nothing, weight], {}).text == "fails: 2 failures"
+
+
+def test_the_least_tension_governs_where_no_utilisation_does() -> None:
+    slack = [
+        replace(_finding(label, Place(i), rule="wave-slack"), value=value, limit=0.0, sense=">=")
+        for i, (label, value) in enumerate({"buoy": -936.0, "shackle": -2210.0, "w": -9.0}.items())
+    ]
+    assert governing(slack).component == "shackle"
+    assert max(slack, key=_extreme).component == "shackle"
