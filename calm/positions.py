@@ -78,7 +78,7 @@ def plain_degrees(text: str, what: str) -> float:
 
 
 def read_as_minutes(degrees: float) -> float:
-    """Convert a number whose decimals are minutes to degrees: 48.18 stands for 48°18'."""
+    """Convert a number to degrees, with its decimals read as minutes: 48.18 stands for 48°18'."""
     size = abs(degrees)
     whole = int(size)
     minutes = (size - whole) * 100.0

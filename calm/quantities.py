@@ -84,11 +84,10 @@ class Quantity:
         return f"{value * scale:z.{places}f}"
 
     def say(self, value: float | None, *beside: float | None) -> str:
-        """Format a value, given in `unit`, in the display unit and with this unit, such as ``113.2
-        m``.
+        """Format a value as a number with its display unit, such as ``113.2 m``.
 
-        A force whose usual unit is kN is shown in N if the force and all values in `beside` are
-        below 1 kN.
+        The value is given in `unit`. A force whose usual unit is kN is shown in N if the force and
+        all values in `beside` are below 1 kN.
         """
         if value is None or value != value:
             return "unknown"
@@ -96,7 +95,7 @@ class Quantity:
         return _with_unit(number, unit)
 
     def number_and_unit(self, value: float, *beside: float | None) -> tuple[str, str]:
-        """Return the number and the unit, as separate texts, with which a value is displayed.
+        """Return the displayed number and the display unit of a value, as two texts.
 
         The value is given in `unit`. For `beside`, see `say`.
         """

@@ -27,15 +27,15 @@ def shipped_folder(name: Literal["catalog", "lines", "docs"]) -> Path:
 Template = Literal["shelf", "deep", "adcp-frame", "taut-surface", "slack-surface", "tow"]
 
 TEMPLATES: dict[Template, str] = {
-    "shelf": "current meter and temperatures along a wire, 300 m",
+    "shelf": "current meter and temperature sensors on a wire, 300 m",
     "deep": "current meters on wire and rope with glass floats, 4000 m",
-    "adcp-frame": "ADCP that looks up from near the seabed, 90 m",
+    "adcp-frame": "upward-looking ADCP near the seabed, 90 m",
     "taut-surface": "buoy on wire and nylon, 2000 m",
     "slack-surface": "marker buoy on chain and floating rope, 60 m",
-    "tow": "towed body, with the wire cut for a required depth",
+    "tow": "towed body; the wire length is found for a required depth",
 }
 """Kinds of template moorings, with descriptions. No template accepts an unknown value, because this
-is a decision of the person who signs the design.
+decision belongs to the person who signs the design.
 """
 
 

@@ -77,8 +77,9 @@ def chart_solve(
 ) -> ChartAnswer:
     """Find every cable that has three given quantities, or the reason why there is none.
 
-    The cables have the given quantities to 1e-9: angles in rad, distance relative to the length,
-    other quantities relative to their own size.
+    Each cable has the given quantities with an error of at most 1e-9. The error of an angle is in
+    rad. The error of a distance is relative to the length. Other errors are relative to the given
+    value.
 
     A cable that turns by less than a hundredth of a radian is almost straight, so its tension is
     less accurate than the given shape (angles, height, distance, length).
@@ -177,7 +178,7 @@ def _distinct(pieces: list[Piece]) -> list[Piece]:
     return kept
 
 
-# the scale follows from the first of these sizes; a distance may vanish
+# the first of these quantities that is given sets the scale; a distance comes last, as it may be 0
 _SCALES = ("length", "tension_b", "height", "tension_a", "distance")
 
 
@@ -258,10 +259,10 @@ def family(what: str) -> NoEquilibrium:
 
 
 def contradiction(known: Mapping[str, float]) -> NoEquilibrium | None:
-    """Return a contradiction, independent of K, between the quantities of a sinking cable.
+    """Find a contradiction between the quantities of a sinking cable, or return None.
 
-    Return None if there is no contradiction. For a buoyant cable, the caller passes the mirrored
-    quantities. The messages suit both kinds of cable.
+    Only contradictions that exist at every K are found. For a buoyant cable, the caller passes the
+    mirrored quantities. The messages suit both kinds of cable.
     """
     below, above = known.get("tension_a"), known.get("tension_b")
     height, distance = known.get("height", 0.0), known.get("distance", 0.0)
@@ -347,11 +348,11 @@ def _none(message: str, advice: str) -> NoEquilibrium:
 
 
 def straight(k: float, known: Mapping[str, float]) -> ChartSolution | NoEquilibrium | None:
-    """Return the straight cable at the critical angle, which is not part of a branch of the curve.
+    """Return the straight cable at the critical angle, if this cable has the given quantities.
 
-    In `known`, angles are in rad and tensions are divided by w. Return NoEquilibrium if the
-    quantities do not determine the length of the cable. Return None if no straight cable at the
-    critical angle has these quantities to 1e-9.
+    A straight cable does not lie on a branch of the curve. In `known`, angles are in rad and
+    tensions are divided by w. Return NoEquilibrium if the quantities do not determine the length of
+    the cable. Return None if no straight cable at the critical angle has these quantities to 1e-9.
     """
     angle = float(critical_angle(k))
     sine, cosine = math.sin(angle), 0.0 if k == 0.0 else math.cos(angle)

@@ -101,8 +101,9 @@ class Branch:
 
     @cached_property
     def limit(self) -> float:
-        """Limit of cos ψ far beyond the apex; far before the apex, cos ψ approaches the negative of
-        this value.
+        """Limit of cos ψ far beyond the apex.
+
+        Far before the apex, cos ψ approaches the negative of this value.
         """
         return float(-self.sign * _leaning(self.k))
 

@@ -8,9 +8,9 @@ divided by w, height, distance, length) does not depend on H₀. The search ther
 - one unknown if one angle, or the ratio of the tensions, is given;
 - two unknowns for length, distance and a third size: the ratio D/L then relates λ_B to λ_A.
 
-A residual is scanned on a grid that is fine for short pieces and extends to where the curve is
-straight to rounding. Changes of sign are refined, and minima close to zero are examined for a pair
-of roots.
+A residual is scanned on a grid that is fine for short pieces. The grid extends to the point beyond
+which the curve is straight within rounding. Changes of sign are refined, and minima close to zero
+are examined for a pair of roots.
 
 If length, distance and a third size are given, the mean of cos ψ over the piece must be D/L, and
 the third size must be a known fraction of the length. Powell's method starts from every pair of
@@ -41,7 +41,7 @@ _WINDOW = 2 * _AROUND + 1
 
 @dataclass(frozen=True)
 class ChartSearch:
-    """Search for the parts of a branch that have given sizes (tensions, height, distance, length).
+    """Search for the parts of a branch that have the given quantities after scaling by H₀.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ class ChartSearch:
     sizes: Mapping[str, float]
 
     def pieces(self, start: float | None, end: float | None) -> list[Piece]:
-        """Find all parts of the branch that have the given sizes.
+        """Find all parts of the branch that have the given quantities after scaling by H₀.
 
         `start` and `end` are the values of λ at the ends, or None if unknown. If both are unknown,
         two of the sizes must determine the ratio of the tensions.
@@ -94,7 +94,7 @@ class ChartSearch:
         return None
 
     def _raised(self, start: ArrayLike, ratio: float) -> Floats:
-        """Return λ_B, where the tension is exp(ratio) times the tension at `start`."""
+        """Return the λ_B at which the tension is exp(ratio) times the tension at `start`."""
         return inverse_log_cosh(log_cosh(start) + ratio / self.branch.exponent)
 
     def _residual(self, path: Path, places: Floats) -> Floats:
@@ -102,8 +102,8 @@ class ChartSearch:
         ratio.
         """
         start, end = path(places)
-        # with more than two sizes, the path has used the tensions; one of them and the other size
-        # remain
+        # with three sizes, the path satisfies the ratio of the tensions; one of the two sizes that
+        # give this ratio is then compared with the third size
         names = sorted(self.sizes, key=_ORDER.index)
         first, second = names[0], names[-1]
         left = size_of(self.branch, first, start, end) * self.sizes[second]
@@ -120,7 +120,7 @@ _ORDER = (*_TENSION_NAMES, "distance", "length")
 
 
 def roots(function: Callable[[Floats], Floats], grid: Floats) -> Floats:
-    """Find the zeros of a vectorised function that a scan over a grid reveals.
+    """Scan a vectorised function over a grid, and find its zeros.
 
     Zeros with a change of sign are computed to machine precision. Where the function approaches
     zero without changing sign, the grid is refined repeatedly, because two zeros may lie between
@@ -167,8 +167,9 @@ def reach(branch: Branch) -> float:
 
 
 def size_of(branch: Branch, name: str, start: ArrayLike, end: ArrayLike) -> Floats:
-    """Return one size of parts of the curve: height, distance or length in units of H₀, or a
-    tension in units of wH₀.
+    """Return the tension, height, distance or length of parts of the curve.
+
+    A tension is in units of wH₀, the other quantities are in units of H₀.
     """
     if name == "tension_a":
         return np.exp(branch.log_tension(start))
@@ -192,9 +193,7 @@ def refine(function: Callable[[Floats], Floats], left: Floats, right: Floats) ->
 
 
 def steps_with_zero(value: Floats) -> NDArray[np.intp]:
-    """Return the steps of a scan over which the sign changes; a step is given by the index of its
-    first point.
-    """
+    """Return the indices of the scan points after which the sign changes."""
     change = (np.sign(value[:-1]) != np.sign(value[1:])) & (value[:-1] != 0.0)
     change &= np.maximum(np.abs(value[:-1]), np.abs(value[1:])) > _NOISE
     return np.flatnonzero(change)
@@ -222,8 +221,7 @@ _LEAST_RISE = 1.0 + 1e-13
 
 @dataclass(frozen=True)
 class LengthSearch:
-    """Search for the parts of a branch with a given ratio D/L and a given ratio of a third size to
-    L.
+    """Search for the parts of a branch with given ratios D/L and S/L, where S is a third size.
 
     Parameters
     ----------

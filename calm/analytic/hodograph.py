@@ -268,9 +268,10 @@ class Station(NamedTuple):
     z : height above the given end [m]
 
     All arrays have the shape of the given arcs. A cable above a towed body has angles below 90°. A
-    mooring line is inclined downstream, so its angles are above 90° (90° + tilt). The force at the
-    given end is the load below it: a body of weight W in water and drag D pulls with T₀ = √(W² +
-    D²) at the angle atan2(W, D); for a float of buoyancy B the angle is atan2(B, −D).
+    mooring line is inclined downstream, so its angles are above 90° (90° + tilt). The load at the
+    given end determines the tension and the angle there. A body of weight W in water and drag D
+    gives T₀ = √(W² + D²) at the angle atan2(W, D). A float of buoyancy B gives the angle
+    atan2(B, −D).
     """
 
     angle: Floats

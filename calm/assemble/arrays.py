@@ -45,7 +45,7 @@ def assemble_line(
 ) -> Line:
     """Build the arrays of the line above the anchor, or of a whole towed line, in piece order.
 
-    A piece with a fitted length has length 0 until it is fitted.
+    A piece whose length is fitted has length 0 until the length is known.
 
     Parameters
     ----------
@@ -134,8 +134,9 @@ def _elongation(component: files.Component) -> ElongationCurve | None:
 
 
 def with_axial_clamps(line: Line, pieces: Sequence[files.Piece]) -> Line:
-    """Return a copy of a line in which the clamps have the drag of axial flow, as in descent or
-    ascent.
+    """Return a copy of a line in which the drag of the clamps is the drag in axial flow.
+
+    The flow is axial during descent and ascent.
     """
     clamps = [clamp.component for piece in pieces for clamp in piece.clamps]
     axial = [drag_of(each)[2] for each in clamps]
@@ -147,9 +148,7 @@ def with_axial_clamps(line: Line, pieces: Sequence[files.Piece]) -> Line:
 
 
 def vibration_law(solver: Solver) -> BourgetMarichal | None:
-    """Return the law by which strumming increases the Cn of cables, or None if the file sets no
-    law.
-    """
+    """Return Bourget & Marichal's strumming law, or None if the file does not set this law."""
     keys = solver.strumming
     if not isinstance(keys, strumming_keys.BourgetMarichalKeys):
         return None
@@ -161,10 +160,10 @@ def assemble_floating(
 ) -> Floating | None:
     """Return the properties of the first float when it is at the surface.
 
-    The hull is the one that the component specifies as `hull`; by default, a sphere or a cylinder
-    has a hull of its own shape. If the volume is unknown, the draft is unknown too, and only
-    `k_surface` has an effect. Return None if there is no float, or if both the draft and the
-    surface drag of the float are unknown.
+    The key `hull` of the component specifies the hull. Without this key, a sphere has a spherical
+    hull, and a cylinder has a cylindrical hull. If the volume is unknown, the draft is unknown too,
+    and only `k_surface` has an effect. Return None if there is no float, or if both the draft and
+    the surface drag of the float are unknown.
     """
     parts = (piece.component for piece in pieces)
     floats = (part for part in parts if isinstance(part, files.Rigid) and part.net_buoyancy > 0.0)

@@ -20,8 +20,8 @@ from calm.units import QuantityError, parse_quantity
 def net_buoyancy(component: files.Component, gravity: float) -> float:
     """Return the net buoyancy in reference water, positive up [N; N/m for a cable or chain].
 
-    The value is the specified buoyancy or weight. Without either, it is computed from the mass and
-    the acceleration of gravity [m/s²].
+    The value is the specified buoyancy or weight. Without a buoyancy or weight, the value is
+    computed from the mass and the acceleration of gravity [m/s²].
     """
     given = any(getattr(component, name, None) is not None for name in ("buoyancy", "weight"))
     return component.net_buoyancy * (1.0 if given else gravity / STANDARD_GRAVITY)
@@ -114,9 +114,9 @@ def cable_drag(component: FlexibleComponent, solver: Solver) -> tuple[float, flo
     """Return the drags Kn and Kt per metre of cable or chain [N/(m/s)²].
 
     A cable's Kn includes strumming. With Bourget & Marichal's law, however, Kn excludes strumming,
-    because the march adds its effect. Pode's constant friction is Kt = Ct ½ρ Cn D. If a cable or
-    chain has no Ct, Pode's law uses the default Ct π/Cn (0.012, 0.022 or 0.031, depending on the
-    finish), so that the friction is the same as in the quadratic law.
+    because the march computes the effect of strumming. Pode's constant friction is Kt = Ct ½ρ Cn D.
+    If a cable or chain has no Ct, Pode's law uses the default Ct π/Cn (0.012, 0.022 or 0.031,
+    depending on the finish), so that the friction is the same as in the quadratic law.
     """
     if isinstance(component, Cable):
         usual = drag.CABLE_CN, drag.CABLE_CT[component.finish or "smooth"]
@@ -182,8 +182,8 @@ class Datasheet:
 def datasheet(definition: Defined, catalogue: files.Catalogue | None = None) -> Datasheet | None:
     """Return the derived values of a component, or the sums over the parts of an assembly.
 
-    Return None for an outline. Also return None for an assembly if no catalogue is given, or if one
-    of its parts is missing from the catalogue or overrides values of its component.
+    Return None for an outline. An assembly has derived values only if the catalogue contains all
+    its parts, and if no part overrides values of its component. Otherwise return None.
     """
     if isinstance(definition, files.Component):
         return _of_component(definition, 1.0)

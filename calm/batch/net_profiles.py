@@ -6,7 +6,6 @@ still water, from the net in the current of its file. If the search fails, or if
 depth grid, the profile is solved as in `calm run`.
 """
 
-from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -18,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.batch import solving
-from calm.batch.solving import sea_of  # by name: what a compiled law calls
+from calm.batch.solving import sea_of  # compiled code calls this function by its own name
 from calm.batch.statuses import OF_PROFILES, STATUSES
 from calm.case.design import Design, Result, result_together
 from calm.case.line_figures import leaning_of
@@ -28,7 +27,7 @@ from calm.errors import NoEquilibrium
 from calm.files import CurrentTable
 from calm.files.legs import nodes_of
 from calm.files.pieces import clamps_down
-from calm.physics.compiled import by_address, outcome
+from calm.physics.compiled import optimised, outcome
 from calm.physics.line import BETTER, Floats, Water
 from calm.physics.profile import Sea
 from calm.physics.track import head_count
@@ -90,8 +89,8 @@ class NetArrays(NamedTuple):
     weight: Floats
 
 
+@optimised
 def solve_net_rows(
-    ask: Callable[[NetTask, float], float],
     net: NetProblem,
     step: float,
     arrays: NetArrays,
@@ -122,10 +121,10 @@ def solve_net_rows(
             copy_values(arrays.slopes[k], net.slopes[k])
         copy_values(arrays.scale, net.scale)
         how = Marching(sea, 4.0 * step, CHOSEN, False, False, FINE, 0.0)
-        ending = ask(NetTask(leg_closing.CLOSE, net, arrays.x, how, leg_closing.NEAR, True), 0.0)
+        ending = do_task(NetTask(leg_closing.CLOSE, net, arrays.x, how, leg_closing.NEAR, True))
         if ending == FOUND:
             how = Marching(sea, step, CHOSEN, False, False, FINE, 0.0)
-            ending = ask(NetTask(leg_closing.SETTLE, net, arrays.x, how, TOLERANCE, True), 0.0)
+            ending = do_task(NetTask(leg_closing.SETTLE, net, arrays.x, how, TOLERANCE, True))
         endings[case] = SOLVE_ALONE
         if ending == FOUND and is_valid(net, arrays):
             endings[case] = 0
@@ -195,7 +194,7 @@ class NetProfiles:
     net: Design
 
     def water(self, depth: Column, u: Column, v: Column, w: Column) -> Water:
-        """Return the water of the net with another current profile."""
+        """Return the water of the net, with its current replaced by the given profile."""
         environment = replace(self.net.file.environment, current=CurrentTable(depth, u, v, w))
         return self.net.water_of(environment)
 
@@ -238,7 +237,7 @@ class NetProfiles:
         search, step = self.search(), 4.0 * self.net.settings.angle_step
         search.put_in(self.net.water.still() if self.still else self.net.water)
         how = search.marching(step, CHOSEN, FINE, given=False)
-        # the unknowns are closed already; this call computes the scales of the legs and the slopes
+        # these unknowns already close the net; this call computes the slopes and scales
         search.do(leg_closing.CLOSE, self.base.unknowns, how, np.inf)
         return np.array(search.net.slopes), np.array(search.net.scale)
 
@@ -307,9 +306,7 @@ class NetProfiles:
             weight=np.array(weights),
         )
         step = float(search.settings.angle_step)
-        how = search.marching(step, CHOSEN, FINE, given=False)
-        ask = by_address(do_task, NetTask(leg_closing.CLOSE, search.net, arrays.x, how, 0.0, True))
-        given = (ask, search.net, step, arrays, *current, rows, endings)
+        given = (search.net, step, arrays, *current, rows, endings)
         outcome(solve_net_rows, True, *given)
 
     def _columns(self, rows: NetRows) -> dict[str, Floats]:

@@ -25,12 +25,12 @@ from calm.case.measure import clamps_of, components_of
 from calm.case.result_tables import MOORED_ENDS, Clamps, Columnar, Components
 from calm.files import Clamp, CurrentTable, Piece
 from calm.files.pieces import clamps_down
-from calm.physics.compiled import by_address, outcome
+from calm.physics.compiled import outcome
 from calm.physics.line import Floats, Integers, Line, Water
 from calm.records.given import as_file, is_record
 from calm.solve import Status
 from calm.solve.audit import referee_of
-from calm.solve.mooring import MORE_ROOM, SearchTask, run_search, search_of
+from calm.solve.mooring import MORE_ROOM
 from calm.solve.problem import MANY_ROOM, problem_of
 from calm.solve.solution import FOUND
 
@@ -50,11 +50,12 @@ _STILL = CurrentTable((0.0,), (0.0,), (0.0,), (0.0,))
 
 
 class Profiles(Columnar):
-    """Results of a mooring for n profiles; a profile whose `status` is not 0 has NaN.
+    """Results of a mooring for n profiles.
 
-    If the currents were given in arrays with more dimensions, these dimensions replace n. Depths,
-    offsets and knockdown are in m, tensions and forces in N, tilt in degrees. The p components are
-    in the order of the file, with the anchor last, and the m clamps are listed down the line.
+    The values of a profile are NaN unless its `status` is 0. If the currents were given in arrays
+    with more dimensions, these dimensions replace n. Depths, offsets and knockdown are in m,
+    tensions and forces in N, tilt in degrees. The p components are in the order of the file, with
+    the anchor last, and the m clamps are listed down the line.
 
     Further attributes are the batch columns, which `Profiles.columns` lists. Columns of
     `Components` have the shape (n, p), and columns of `Clamps`, such as ``clamp_depth``, have the
@@ -78,9 +79,9 @@ class Profiles(Columnar):
 
     @classmethod
     def columns(cls) -> dict[str, list[ResultColumn]]:
-        """Return the batch columns by dimension: `component`, `clamp`, or an empty text.
+        """Return the batch columns by dimension: `component`, `clamp`, or an empty string.
 
-        The empty text stands for values at the ends of the line.
+        The empty string stands for values at the ends of the line.
         """
         return {
             "component": Components.columns(Output.BATCH),
@@ -162,9 +163,9 @@ def solve_profiles(
     """Solve a mooring for many current profiles.
 
     Each profile replaces the current of the file; everything else, such as density and wind, stays
-    the same. Not a single bit of the results of a profile depends on the order of the profiles, on
-    the other profiles or on `workers`. The results agree with `calm run` to 1e-4 of the water depth
-    and 2e-4 of the tension.
+    the same. The results of a profile are the same to the last bit, whatever the order of the
+    profiles, the other profiles and `workers` are. The results agree with `calm run` to 1e-4 of the
+    water depth and 2e-4 of the tension.
 
     Parameters
     ----------
@@ -374,7 +375,7 @@ class Batch:
         )  # fmt: skip
         # a profile without current is detected separately
         problem = problem._replace(limits=problem.limits._replace(at_rest=False))
-        search, referee = search_of(problem, True), referee_of(line, water, 0.0, True)
+        referee = referee_of(line, water, 0.0, True)
         found: Any = problem.starts
         if starts is not None:
             found[:] = starts
@@ -384,8 +385,7 @@ class Batch:
             may_lie=np.array([one.component.kind == "chain" for one in pieces], np.intp),
             depths=np.zeros((3, len(line.clamp_piece) + len(line.length))),
         )
-        find = by_address(run_search, SearchTask(search, referee))
-        given = (find, search, referee, arrays, starts is None, depth, *parts, rows, endings)
+        given = (problem, referee, arrays, starts is None, depth, *parts, rows, endings)
         outcome(solving.solve_rows, True, *given)
         return np.asarray(found)
 

@@ -68,10 +68,10 @@ def resolved_input(
 
 
 def with_input(text: str) -> Attributes:
-    """Return the attributes for the input `text`, with a placeholder for its hash.
+    """Return the result attributes for the input `text`, with a placeholder for the hash.
 
-    The hash of the measured values is known only later, and replaces the placeholder, which has the
-    same length.
+    The final hash includes measured values that have not been read yet. It has the length of the
+    placeholder, and replaces the placeholder later.
     """
     return {RESOLVED: text, **InputHash(text).attributes()}
 

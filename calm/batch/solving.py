@@ -4,19 +4,19 @@ A profile is solved to a tolerance of about a millionth of the depth, and withou
 results are extrapolated from solutions with segments of two lengths, one half of the other.
 """
 
-from collections.abc import Callable
 from math import atan2, inf, isfinite, nan, pi, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from calm.physics.compiled import set_row
+from calm.physics.compiled import optimised, set_row
 from calm.physics.law_kinds import record_type
 from calm.physics.line import BETTER, NO_ROOM, Floats, Integers, Water
 from calm.physics.passing import FAILURE
 from calm.physics.passing import NODES as MARCHED
 from calm.physics.profile import Interval, Sea, find_bends
 from calm.physics.referee import RefereeShape, find_ends
+from calm.solve.closing import miss_at
 from calm.solve.mooring import (
     FIRST_OTHER,
     GOAL,
@@ -28,11 +28,12 @@ from calm.solve.mooring import (
     SOUGHT,
     STAGES,
     UNKNOWN_VALUE,
-    SearchTask,
+    run_search,
 )
-from calm.solve.problem import BELOW, CHOSEN, FINE, About, Limits, LineProblem, Search, Unknown
+from calm.solve.problem import BELOW, CHOSEN, FINE, About, Limits, LineProblem, Unknown
 from calm.solve.search import Referee
 from calm.solve.solution import FOLDED, FOUND, MARCH_STOPPED, SUPPORTED, TOO_HEAVY, UNSUPPORTED
+from calm.solve.starts import fill_starts
 
 DEPTH, EAST, NORTH, TENSION_TOP, TENSION_BOTTOM, TILT = range(6)
 OF_PIECE = ("depth_top", "x_top", "y_top", "tension_top", "tension_bottom", "tilt")
@@ -117,9 +118,9 @@ class ProfileArrays(NamedTuple):
     depths: Floats
 
 
+@optimised
 def solve_rows(
-    find: Callable[[SearchTask, float], float],
-    search: Search,
+    given: LineProblem,
     referee: Referee,
     arrays: ProfileArrays,
     first: bool,
@@ -141,15 +142,15 @@ def solve_rows(
     endings : (n,) outcome of each profile
     """
     if first:
-        find(SearchTask(search, referee), 1.0)
+        fill_starts(given)
     for case in range(endings.size):
-        endings[case], sea = sea_of(arrays.on, depth, u, v, w, case, search.problem.sea)
+        endings[case], sea = sea_of(arrays.on, depth, u, v, w, case, given.sea)
         if endings[case] != FOUND:
             continue
-        problem = in_current(search.problem, arrays.on, sea)
+        problem = in_current(given, arrays.on, sea)
         ending = refused_at_once(problem.limits)
         if ending == FOUND:
-            ending = int(find(SearchTask(Search(search.miss, problem), referee), 0.0))
+            ending = run_search(problem, referee)
             if ending == MARCH_STOPPED and problem.work.left[FAILURE] == NO_ROOM:
                 ending = LACKS_ROOM
         endings[case] = ending
@@ -158,8 +159,7 @@ def solve_rows(
                 endings[case] = LIES_ON_SEABED
             measure(problem, referee, arrays, results, case)
             if results.slopes.shape[1] > 0:
-                own = Search(search.miss, problem)
-                measure_slopes(find, own, referee, arrays, depth, u, v, w, results.slopes, case)
+                measure_slopes(problem, referee, arrays, depth, u, v, w, results.slopes, case)
 
 
 def sea_of(
@@ -187,7 +187,7 @@ def sea_of(
 
 
 def in_current(problem: LineProblem, on: ProfileLevels, sea: Sea) -> LineProblem:
-    """Return a copy of a problem whose water is that of the profile in the work arrays."""
+    """Return a copy of a problem with the water of the profile in the work arrays."""
     given = problem.limits
     moving = False
     for k in range(len(sea.intervals) - 1):
@@ -264,7 +264,7 @@ def measure(
 def lean_of_head(
     problem: LineProblem, referee: Referee, results: Results, case: int, head: int
 ) -> None:
-    """Set the tilt of those pieces at the head of the line that form one rod."""
+    """Set the tilt of the pieces at the head of the line, which form one rod."""
     fine = problem.work.records[FINE]
     end = referee.last[head - 1]
     dx, dy, dz = fine[0][0] - fine[0][end], fine[1][0] - fine[1][end], fine[2][0] - fine[2][end]
@@ -275,8 +275,7 @@ def lean_of_head(
 
 
 def measure_slopes(
-    find: Callable[[SearchTask, float], float],
-    search: Search,
+    problem: LineProblem,
     referee: Referee,
     arrays: ProfileArrays,
     depth: Floats,
@@ -288,12 +287,12 @@ def measure_slopes(
 ) -> None:
     """Write the derivatives of the depths with respect to the current components to row `case`.
 
-    For a small step in each component, the line is marched once, with the same segments and the
-    same value of the unknown. By the implicit function theorem, the unknown changes by minus the
-    change in the miss divided by the slope of the miss. With several floats at the surface, the
-    search is repeated instead.
+    For each component, the line is marched once in a slightly changed current, with the same
+    segments and the same value of the unknown. By the implicit function theorem, the change in the
+    unknown is minus the change in the miss, divided by the slope of the miss. With several floats
+    at the surface, the search is repeated instead.
     """
-    problem, found, row = search.problem, search.problem.work.found, slopes[case]
+    found, row = problem.work.found, slopes[case]
     unknown = Unknown(
         found[GOAL], int(found[SOUGHT]), found[RIDES] > 0.0, found[LANDS] > 0.0, int(found[STAGES])
     )
@@ -303,9 +302,9 @@ def measure_slopes(
     if at_once:
         nudge = NUDGE * (problem.limits.span if unknown.sought == BELOW else 1.0)
         about = About(problem, unknown, step, CHOSEN, True, FINE)
-        above = search.miss(about, x - nudge)
+        above = miss_at(about, x - nudge)
         depths_of(problem, referee, True, moved)
-        missed = search.miss(about, x)
+        missed = miss_at(about, x)
         depths_of(problem, referee, True, base)
         slope = (missed - above) / nudge
         for n in range(base.size):
@@ -322,10 +321,9 @@ def measure_slopes(
         near, change = in_current(problem, arrays.on, sea), nan
         if ending == FOUND and at_once:
             about = About(near, unknown, step, CHOSEN, True, FINE)
-            change = (missed - search.miss(about, x)) / slope
+            change = (missed - miss_at(about, x)) / slope
         elif ending == FOUND:
-            again = int(find(SearchTask(Search(search.miss, near), referee), 0.0))
-            change = 0.0 if again == FOUND else nan
+            change = 0.0 if run_search(near, referee) == FOUND else nan
         depths_of(near, referee, at_once, ahead)
         for n in range(base.size):
             shift = change * moved[n] if at_once else change
@@ -352,8 +350,9 @@ def depths_of(problem: LineProblem, referee: Referee, marched: bool, depths: Flo
 
 
 def node_of(record: Any, nodes: int, n: int) -> tuple[float, float, float, float, float, float]:
-    """Return the extrapolated position [m] and the force [N] at a node; x and y are relative to the
-    line's end.
+    """Return the extrapolated position [m] and the force [N] at a node.
+
+    x and y are relative to the last node.
     """
     x, y, z = record[BETTER], record[BETTER + 1], record[BETTER + 2]
     fx, fy, fz = record[BETTER + 3], record[BETTER + 4], record[BETTER + 5]

@@ -47,7 +47,7 @@ class Adjustment:
     now : value before the change
     range : default smallest and largest value
     to : function that returns the mooring for a new value of the parameter
-    bounded : whether a range given by the user must not extend below the lower end of `range`
+    bounded : whether the lower end of `range` is also the lowest value that the user may allow
     whole : whether the value must be a whole number
     note : remark for the user
     """

@@ -41,8 +41,8 @@ without drag.
 """
 
 _STEP = 2e-4
-"""Relative increase of a drag for the finite-difference derivative, large against the tolerance of
-the solver.
+"""Relative increase of a drag for the finite-difference derivative, much larger than the tolerance
+of the solver.
 """
 SETTINGS = Settings(angle_step=radians(4.0), tolerance=1e-10)
 """Coarse solver settings; they suffice because the contributions are scaled to the total in the

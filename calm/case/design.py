@@ -60,7 +60,7 @@ if TYPE_CHECKING:
 
 _End = TypeVar("_End")
 
-_SKIN = 1e-3  # m above the surface, in which water turns into air
+_SKIN = 1e-3  # m: thickness of the layer above the surface in which water turns into air
 
 
 @dataclass(frozen=True)
@@ -161,7 +161,8 @@ class Design:
         """
         if not self.several:
             return assemble_water(environment)
-        if isinstance(environment.seabed, SeabedGrid):  # its plane belongs to one position
+        # the plane of a depth grid is valid at one position only
+        if isinstance(environment.seabed, SeabedGrid):
             environment = replace(environment, seabed=None)
         water, ends = assemble_water(environment), [e for leg in self.file.legs for e in leg.ends]
         if all(end.held is None or end.held.depth >= 0.0 for end in ends):
@@ -212,8 +213,9 @@ class Design:
         return Design(file, origin=origin)
 
     def with_lines(self, lines: Sequence[Line], water: Water | None = None) -> Design:
-        """Return a copy of the design whose legs have the given lines and, optionally, another
-        water.
+        """Return a copy of the design with the given line in each leg.
+
+        If `water` is given, it replaces the water of the design.
         """
         near = self.standing if self.several else None
         return Design(self.file, lines=tuple(lines), given_water=water or self.water, near=near)
@@ -228,8 +230,9 @@ class Design:
         return self.with_lines(lines)
 
     def with_pieces(self, pieces: Sequence[Sequence[Piece]]) -> Design:
-        """Return a copy of the design with the given pieces in each leg; stand-ins for anchors are
-        allowed.
+        """Return a copy of the design with the given pieces in each leg.
+
+        The last piece of a leg may be a stand-in for an anchor.
         """
         if not self.several:
             return Design(
@@ -526,7 +529,7 @@ class Result:
 
     @property
     def strumming_band(self) -> StrummingBand | None:
-        """Results of the leg for the case that strumming increases the drag of its cables.
+        """Results of the leg if strumming increases the drag of its cables.
 
         The leg is solved when the attribute is first used.
         """

@@ -42,8 +42,8 @@ class Leg:
     ----------
     file : file with this leg only; its pieces are counted from the upper end. If a leg that is not
         a tow has no anchor, its last piece is a stand-in with the id `STAND_IN`
-    for_surface : whether the leg is designed to reach the surface; if None, this is determined from
-        the leg itself. A changed copy made for a check keeps the value of the original leg
+    for_surface : whether the leg is designed to reach the surface; None to determine this from the
+        leg itself. In a check, changed copies of a leg have the value of the original leg
     memory : cache of solutions for earlier states of the file and for other environments
     given_line, given_water : replacements for the line and the water of the file
     """
@@ -127,7 +127,7 @@ class Leg:
 
     @cached_property
     def line(self) -> Line:
-        """Pieces above the anchor as arrays, with a fitted piece at its cut length.
+        """Pieces above the anchor as arrays; a fitted piece has its computed cut length.
 
         Raises NoEquilibrium if no cut length reaches the required depth.
         """
@@ -156,7 +156,7 @@ class Leg:
         )
 
     def cut(self, file: MooringFile) -> MooringFile:
-        """Return the file in which the fitted piece has its cut length in this leg.
+        """Return a copy of a file with the cut length that this leg computes for the fitted piece.
 
         Raises NoEquilibrium if no cut length reaches the required depth.
         """
@@ -260,7 +260,7 @@ class Leg:
         """Raise NoEquilibrium if a line would penetrate the seabed of a depth grid.
 
         The solver assumes a plane seabed, so the grounded part may be below the grid. The suspended
-        part may be as far below the grid as the grounded part.
+        part may be below the grid, too, but no farther than the grounded part.
         """
         depth = self.water.depth
         if self.file.environment.seabed is None:

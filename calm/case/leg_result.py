@@ -222,7 +222,7 @@ class LegResult:
 
     @cached_property
     def strumming_band(self) -> StrummingBand | None:
-        """Results of the line for the case that strumming increases the drag of its cables.
+        """Results of the line if strumming increases the drag of its cables.
 
         The line is solved when the attribute is first used. The value is None for a leg of a net.
         """

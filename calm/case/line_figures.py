@@ -211,8 +211,8 @@ class NodeFigures:
         if self.solution.line.towed:
             chord = -chord
         lengthy = np.linalg.norm(chord, axis=1) > 0
-        # a point without length takes the angle of the segment above, the first points that of the
-        # segment below
+        # a segment without length takes the angle of the segment above; at the top of the line,
+        # it takes the angle of the segment below
         last = np.maximum.accumulate(np.where(lengthy, np.arange(len(chord)), -1))
         first = int(np.argmax(lengthy))
         leaning = leaning_of(chord)[np.where(last >= 0, last, first)]

@@ -64,7 +64,7 @@ class Memory:
 
 
 class NoMemory(Memory):
-    """Replacement for the cache that stores nothing, so that every line is solved."""
+    """Cache that stores nothing, so that every line is solved."""
 
     def __reduce__(self) -> tuple[type[Memory], tuple[()]]:
         return NoMemory, ()

@@ -66,7 +66,7 @@ def profilers_in(leg: Leg) -> list[Clamp]:
 def _travel(leg: Leg, clamp: Clamp) -> ProfilerTravel:
     assert clamp.travel is not None
     upper, lower = clamp.travel
-    if isinf(lower):  # the end of its wire
+    if isinf(lower):  # the profiler travels to the end of its wire
         on = next(piece.index for piece in leg.file.pieces if clamp in piece.clamps)
         lower = float(leg.line.length[on])
     places = [_found(leg, clamp, float(at)) for at in np.linspace(upper, lower, PLACES)]

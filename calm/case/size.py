@@ -66,7 +66,7 @@ class Sizing:
     range : smallest and largest value of the parameter
     status : ``met``, ``met-already`` (nothing to change) or ``not-met``
     before, after : the original mooring, and the mooring with the smallest change that meets the
-        target, solved with the settings of its file; `after` is None if the target is not met
+        target, both solved with the settings of the file; `after` is None if the target is not met
     message, advice : reason why the target is not met, and advice
     steady : whether the target's quantity is monotonic over the values tried
     solves : number of equilibria computed

@@ -61,8 +61,8 @@ class Uncertain:
     clamps : (3, 4, m) depth, knockdown, tilt and tension of the m clamps above the anchor, in the
         same units
     anchor_tension, required_weight : (3,) anchor tension and required anchor weight [N]
-    contributions : contributions of the inputs to the variance of the top's knockdown, or of its
-        excursion if it is at the surface; empty if there is no variance
+    contributions : contributions of the inputs to the variance of the top's knockdown or, for a
+        top at the surface, of the top's excursion; empty if there is no variance
     unexplained : fraction of this variance that the fit does not explain
     """
 

@@ -128,7 +128,7 @@ def hardware(handling: Handling) -> Iterator[Verdict]:
 
 @rule("swivel", once=True)
 def swivel(handling: Handling) -> Iterator[Verdict]:
-    """Check for a swivel between each wire that is not torque-balanced and a float at its end.
+    """Check that a swivel separates each wire that is not torque-balanced from a float at its end.
 
     Wire rope that is not torque-balanced twists as its load changes. A float in the current resists
     this rotation, so the wire kinks. A swivel at either end lets the wire turn. Chain or synthetic
@@ -323,7 +323,7 @@ def profiler(result: LegResult) -> Iterator[Verdict]:
     """Check the tension, wire, path and drive force of each profiler at its current position.
 
     Other positions of the profiler are checked as separate situations. The flow along the wire
-    past the profiler is at most its speed plus the current times the sine of the tilt.
+    past the profiler is at most the speed of the profiler plus the current × sine of the tilt.
     Wheel friction, and the effect of compression on the weight of the profiler, are unknown and
     neglected.
     """

@@ -4,9 +4,9 @@ Each mooring is checked in each of its environments, and then for launch, recove
 
 If the inputs of the design have an `uncertainty`, each finding with a limit gets the probability
 that the limit is exceeded. To estimate it, random samples of the mooring are solved in the
-situation of the finding, and those that exceed the limit are counted. A launch or an ascent takes
-as long to solve as many equilibria, so launch, recovery and breaks are solved for the first
-`HANDLED` samples only. A sample without equilibrium counts as exceeding every limit.
+situation of the finding, and those that exceed the limit are counted. Solving a launch or an
+ascent takes as long as solving many equilibria, so launch, recovery and breaks are solved for the
+first `HANDLED` samples only. A sample without equilibrium counts as exceeding every limit.
 """
 
 from collections import Counter
@@ -73,9 +73,9 @@ def checked_environment(
     """Apply the rules to a leg in all its situations.
 
     In the result, `findings` contains all findings for the unchanged mooring, and any worse
-    findings for other situations. `tighter` contains findings for other situations that have a
-    larger utilisation. A failure that occurs only with strumming cables becomes a warning, because
-    it is uncertain whether the cables strum.
+    findings for other situations. `tighter` contains findings for other situations if their
+    utilisation is larger than in `findings`. A failure that occurs only with strumming cables
+    becomes a warning, because it is uncertain whether the cables strum.
 
     Parameters
     ----------
@@ -234,7 +234,7 @@ def _numbers(in_environments: Sequence[MooringInEnvironment]) -> dict[str, int]:
 def findings_of_currents(
     legs: Sequence[Leg], name: str, acceptance: Acceptance
 ) -> Iterator[Finding]:
-    """Yield the findings on currents and environments, for which all environments are compared."""
+    """Yield the findings of the rules that compare all environments of a mooring."""
     for each in OF_ENVIRONMENTS:
         for leg, verdict in each.judge(legs):
             yield acceptance.of(each.find(verdict, name, leg.file.environment.name or OWN))

@@ -71,7 +71,7 @@ class MooringInEnvironment:
     situations : solved situations, beginning with the unchanged mooring
     findings : all findings for the unchanged mooring, and any worse findings for other situations
     tighter : for each rule and part, the finding with the largest utilisation in other situations,
-        if it is larger than in `findings`
+        if this utilisation is larger than in `findings`
     accepted : accepted findings for all situations, including findings not in `findings`
     lacking : findings that lack a component value, for all situations; they are not in `findings`
     """
@@ -140,7 +140,7 @@ class Assessment:
 
     @property
     def state(self) -> State:
-        """Worst state of all findings, but pass if that state is accepted or not judged."""
+        """Worst state of all findings; pass if the worst state is accepted or not judged."""
         worst = worst_state(finding.state for finding in self.all_findings())
         return State.PASS if worst in (State.ACCEPTED, State.NOT_JUDGED) else worst
 
@@ -151,7 +151,7 @@ class Assessment:
 
     @property
     def draft(self) -> bool:
-        """Whether an acceptance bears the placeholder name of example files, not a person's."""
+        """Whether an acceptance is signed with the placeholder of the example files."""
         return any(
             one.accept is not None and one.accept.by == EXAMPLE for one in self.accepted_findings()
         )
@@ -213,8 +213,8 @@ class Acceptance:
         """Apply the estimates and acceptances of the file to a finding; return the new finding.
 
         If a finding relies on an estimate, a pass becomes estimated and a failure becomes unknown.
-        A failure or an unknown that the file accepts becomes accepted. An acceptance of the rule
-        `missing` covers every rule that lacks a value of the component.
+        A finding that fails or is unknown becomes accepted if the file accepts it. An acceptance of
+        the rule `missing` covers every rule that lacks a value of the component.
         """
         finding = self._estimated(finding)
         if finding.state not in (State.FAIL, State.UNKNOWN):
@@ -308,8 +308,8 @@ def _in_words(estimates: tuple[EstimatedFigure, ...]) -> str:
 def estimated(leg: Leg) -> Leg:
     """Return a copy of a leg in which the lower bounds of estimates replace missing values.
 
-    In an environment with waves, and for a line with a surface float, these are the lower bounds
-    for lines in waves.
+    If the environment has waves, or if the line has a surface float, the lower bounds for lines in
+    waves are used.
     """
     file = leg.file
     if not any(part.component.estimates for part in parts_of(file.pieces)):

@@ -236,8 +236,8 @@ def _of_a_rope(rope: Cable) -> Iterator[str]:
     """Yield values that make a rope too heavy, too stiff, too strong or too buoyant for its
     cross-section.
 
-    The weight of the rope is compared with that of a solid bar. Its density is the specified
-    `density`, or else that of the `material`, or else that of steel.
+    The weight of the rope is compared with that of a solid bar. The density of the bar is the
+    specified `density`, or else that of the `material`, or else that of steel.
     """
     section = rope_section(rope)
     density = rope.density or materials.density_of(rope.material) or STEEL_DENSITY

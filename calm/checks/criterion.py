@@ -77,9 +77,9 @@ class Criterion:
         remedy
     least : whether the limit is a lower limit
     beyond : state if the limit is exceeded: fail or warn
-    silent : whether a value of NaN means that the criterion does not apply; otherwise it means that
-        the value is unknown
-    source : source of the limit; "" if it is the source of the rule
+    silent : whether a value of NaN means that the criterion does not apply; otherwise NaN means
+        that the value is unknown
+    source : source of the limit; "" for the source of the rule
     lacks : key of the missing component value, if `limit` is None
     figure : key of the component value that sets `limit`, for a rule that uses several; else ""
     stated : function that takes the value and the result, and returns value and limit of a more
@@ -197,9 +197,9 @@ def limits_used(file: MooringFile, surface: bool) -> tuple[LimitKey, ...]:
 
     Limits that the design does not set have their defaults; limits without a default apply only if
     the design sets them. The friction coefficient of an anchor, if specified, overrides
-    `anchor_friction`. The result includes load ratings that the line raises above those of the
-    component, and all other settings that make the check more lenient. If `surface` is true, the
-    top of the mooring has a minimum depth only if the design sets one.
+    `anchor_friction`. The result includes all values and settings that make the check more lenient,
+    such as a load rating that is higher on the line than in the catalogue. If `surface` is true,
+    the top of the mooring has a minimum depth only if the design sets one.
     """
     given = file.checks.minimum_top_depth is not None
     used = (

@@ -18,8 +18,8 @@ from calm.files import Piece
 from calm.quantities import say
 
 NOTICED = 1.05
-"""Ratio of the knockdown (or offset) with the drag curve of a smooth shape to that without, above
-which the rule warns.
+"""Ratio above which the rule warns. The ratio is the knockdown (or offset) with the drag curve of a
+smooth shape, divided by the knockdown without this curve.
 """
 
 _LegVerdict = tuple[LegResult, Verdict]
@@ -31,7 +31,8 @@ def drag_coefficient(results: Sequence[LegResult]) -> Iterator[_LegVerdict]:
 
     The rule applies to spheres and cylinders. If a Reynolds number is too large, yield one verdict,
     with the result for the environment in which the excess is largest. The verdict is a warning if
-    the drag curve of a smooth shape would increase the knockdown; otherwise it is not judged.
+    the drag curve of a smooth shape would increase the knockdown; otherwise its state is not
+    judged.
     """
     fast = [(result, fast_pieces(result)) for result in results]
     found = [(rows[0], result, rows) for result, rows in fast if rows]

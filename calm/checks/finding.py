@@ -172,7 +172,7 @@ class Verdict:
     state : state of the rule
     message : text of the verdict, with value and limit
     remedy : suggested change; None if no change is needed
-    source : source of the limit; "" if it is the source of the rule
+    source : source of the limit; "" for the source of the rule
     lacks : component value that the rule requires but the file lacks; None if none is missing
     missing : missing value with the rules and pieces that need it, for the rule `missing` only
     case : code of the load case; None for the code of the environment and situation

@@ -40,7 +40,7 @@ def is_hauled_in(handling: Handling) -> bool:
 
 @rule("backup", once=True, case="B")
 def backup(handling: Handling) -> Iterator[Verdict]:
-    """Check the net buoyancy that remains to lift the release after a break or a lost float.
+    """Check the net buoyancy that remains to lift the release after a break or the loss of a float.
 
     The line may break at any connection above the back-up floats, or lose any single buoyant
     element. The remaining net buoyancy should be at least `backup_margin` (by default a tenth) of

@@ -25,9 +25,9 @@ from calm.physics.materials import materials_in
 from calm.solve.solution import standing_lift
 
 SHORT_LEAD = 50.0
-"""Maximum length of line between the lowest floats and the release that is exempt from break checks
-[m]; a default of CALM. These floats are the back-up buoyancy for everything above them. If all
-floats are so close to the release, as on a bottom lander or a short line below one float, they
+"""Length of line between the lowest floats and the release, up to which breaks between them are not
+checked [m]; a default of CALM. These floats are the back-up buoyancy for everything above them. If
+all floats are so close to the release, as on a bottom lander or a short line below one float, they
 alone recover the mooring.
 """
 
@@ -44,7 +44,7 @@ class Break:
     margin : net buoyancy, after the break, of the section that contains the release [N]
     weight_lifted : weight in water of the non-buoyant pieces in this section [N]
     required : required margin [N]
-    judged : False if the break would strand the release in any design, so that it is not checked
+    judged : False for a break that is not checked because it would strand the release in any design
     loose : net buoyancy of the section that breaks away at once and drifts, positive up [N]
     """
 
@@ -183,7 +183,7 @@ class LegGraph:
         Consecutive floats with only connectors and chain between them form a cluster. Some breaks
         strand the release in any design and are not judged. These are breaks inside the last
         cluster above a release, and breaks between this cluster and the release if the two are at
-        most `SHORT_LEAD` apart. If this applies to all breaks, clusters are divided at chains as
+        most `SHORT_LEAD` apart. If no break remains to be judged, clusters are divided at chains as
         well. If there is still only one cluster, no break is judged, and only losses of floats are
         checked.
 

@@ -52,7 +52,10 @@ def missing(lacking: Mapping[tuple[str, str], Sequence[Finding]]) -> Iterator[Ve
 
 
 def is_lacking(finding: Finding) -> bool:
-    """Return whether a finding is unknown, and not accepted, because a value is missing."""
+    """Return whether a finding is unknown because a value is missing.
+
+    An accepted finding has another state, so it does not count.
+    """
     return finding.state is State.UNKNOWN and finding.lacks is not None
 
 

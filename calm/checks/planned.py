@@ -27,8 +27,8 @@ class PlannedPart:
     """A piece or a clamp with a planned depth [m].
 
     `least` and `most` are bounds on the depth of the part in still water. They differ only if the
-    line is slack in still water and has no unique shape. In that case, they are the depth in the
-    current and the depth that the part would have on a straight vertical line.
+    line is slack in still water and has no unique shape. In that case, `least` is the depth in
+    the current, and `most` is the depth that the part would have on a straight vertical line.
     """
 
     row: ComponentRow | ClampRow

@@ -149,7 +149,7 @@ _MEASURED = 0.2
 
 @rule("stretch")
 def stretch(result: LegResult) -> Iterator[Verdict]:
-    """Check ropes for unknown stretch, and the load under which their length was measured."""
+    """Check that the stretch of ropes is known, and that ropes are measured under a small load."""
     limit, lengths = _STRETCH * result.leg.water.depth, result.leg.line.length.tolist()
     rows = zip(result.file.pieces, lengths, result.components.tension, strict=False)
     for piece, length, tension in rows:

@@ -4,11 +4,11 @@ The release and everything above it rise together at terminal speed until the fi
 reaches the surface. This piece and everything rigidly connected to it stay there. If the line below
 it is buoyant, it continues to rise as a separate line in still water. The part of this line that is
 already suspended from the surface is included, so the computed rise is too slow. Buoyant pieces
-surface one after another. Each one has risen by the length of line between it and the previous one,
-and everything else is suspended below them.
+surface one after another. To surface, each one rises by the length of line between the previous one
+and itself. All other pieces are suspended below the surfaced ones.
 
-The model neglects acceleration, the possibility that a piece is carried past one above it in the
-line, and that surfaced floats are only half immersed. If the line tangles during ascent
+The model neglects acceleration, and treats surfaced floats as fully immersed. It assumes that no
+piece is carried past a piece above it in the line. If the line tangles during ascent
 (`Recovery.tangles`), the order may differ.
 """
 
@@ -154,7 +154,7 @@ def recovery_of(leg: Leg, result: LegResult) -> Recovery:
 def lifts_of(line: Line, water: Water, result: LegResult) -> Floats:
     """Return the net forces (n,) of the pieces with their clamps, positive up [N].
 
-    They are computed with the water density at the depths of the pieces in equilibrium.
+    The water density is that at the depths of the pieces in equilibrium.
     """
     rows = slice(len(line.length))
     depth = 0.5 * (result.components.depth_top[rows] + result.components.depth_bottom[rows])
@@ -182,7 +182,7 @@ def _risers(
     """
     time, up, count = 0.0, 0, len(length)
     for piece in np.flatnonzero(lifts > 0.0).tolist():
-        # a rope counts as surfaced once its lower end is up, a rigid piece once its upper end is
+        # a rope has surfaced when its lower end is up, a rigid piece when its upper end is up
         distance = float(length[up : piece + bool(line.flexible[piece])].sum())
         if up == 0:
             distance = top if piece < head_count(line) else top + distance

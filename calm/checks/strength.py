@@ -30,8 +30,8 @@ def allowable_load(component: Component, factors: SafetyFactors, surface: bool) 
     """Return the allowable load of a component in service [N]; None without any load rating.
 
     The allowable load is the smaller of the working load and the breaking load divided by the
-    safety factor. The safety factor is that for surface moorings if `surface` is true; otherwise it
-    is that for synthetic rope or that for steel.
+    safety factor. The factor for surface moorings applies if `surface` is true; otherwise the
+    factor for synthetic rope or for steel applies.
     """
     return lesser_load(component, 1.0, safety_factor(component, factors, surface))
 
@@ -219,10 +219,10 @@ def strength_steps(result: LegResult) -> Iterator[Verdict]:
     """Report weak links in the line.
 
     A weak link has less than half the strength of the cables on both sides, and its tension exceeds
-    half of its own strength. A line of uneven strength carries unnecessary weight, and parts at its
-    weak link. If there is no weak link, the piece that comes closest is reported. Chain is excluded
-    because it is oversized to allow for wear. Load ratings that are only lower bounds of an
-    estimate are excluded because they do not show the relative strength.
+    half of its own strength. A line of uneven strength carries unnecessary weight, and breaks at
+    its weak link. If there is no weak link, the piece that comes closest is reported. Chain is
+    excluded because it is oversized to allow for wear. Load ratings that are only lower bounds of
+    an estimate are excluded because they do not show the relative strength.
     """
     factors, surface = result.file.checks.safety_factor, reaches_the_surface(result.leg)
     loads = [
@@ -410,7 +410,7 @@ all of them in the same situation.
 def with_one_weight(
     findings: Iterable[Finding], governing: Mapping[Place | None, Finding]
 ) -> Iterator[Finding]:
-    """Yield the findings, with the same remedy in all findings on an anchor that is too light.
+    """Yield the findings, after giving one remedy to all findings on an anchor that is too light.
 
     The remedy states the largest required weight. `governing` is the result of `heaviest`.
     """

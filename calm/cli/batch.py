@@ -184,8 +184,8 @@ def stopped_by_a_signal(
     """Convert SIGINT and SIGTERM to KeyboardInterrupt while a batch runs.
 
     A stop request of a queueing system then ends the batch like Ctrl-C, without temporary files.
-    Python ignores exceptions raised by a signal handler in the callback of a weak reference, so the
-    returned `progress` raises KeyboardInterrupt, too.
+    Python ignores an exception that a signal handler raises during the callback of a weak
+    reference. For this case, the returned `progress` also raises KeyboardInterrupt.
     """
     if current_thread() is not main_thread():
         yield progress

@@ -92,8 +92,8 @@ def _search(catalogue: Catalogue, text: str, kind: str | None) -> dict[str, Defi
 def show_components(ids: list[str], /, *, json: bool = False) -> ExitCode:
     """Show all values of components with their sources, and derived values.
 
-    Derived values are the net force in water and the drag at 1 m/s across (Kn) and
-    along (Kt) the axis.
+    Derived values are the net force in water, and the drag at 1 m/s across the
+    axis (Kn) and along the axis (Kt).
     Entries for the same item from different sources are shown side by side, the
     recommended one first.
 

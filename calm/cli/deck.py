@@ -194,7 +194,8 @@ def _texts(deck: Deck) -> Iterator[tuple[str, str]]:
 def _folders(designs: Sequence[reading.DesignFile], output: Path) -> list[Path]:
     """Return the folder for the sheets of each mooring.
 
-    UsageError: two moorings have the same folder, or a folder has the path of an input file.
+    Raises UsageError if two moorings have the same folder, or if a folder has the path of an input
+    file.
     """
     if len(designs) == 1:
         return [output]

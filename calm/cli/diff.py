@@ -70,7 +70,8 @@ def diff(
 def compared(files: tuple[Path, ...], lines: list[Design]) -> Comparison:
     """Compare two designs, or one design with its deployment.
 
-    Raises UsageError for a mooring and a tow, a single tow, or a file without `deployed:`.
+    Raises UsageError if a mooring is to be compared with a tow, or if a single file contains a tow
+    or has no `deployed:`.
     """
     from calm.case import Design
     from calm.checks.comparison import comparison_of

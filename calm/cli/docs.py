@@ -126,7 +126,7 @@ def _pages(folder: Path, suffix: str) -> dict[str, Path]:
 def _named(page: str, pages: dict[str, Path]) -> str | None:
     """Return the full name of the page with a given name, or None.
 
-    UsageError: several pages have the name.
+    Raises UsageError if several pages have the name.
     """
     wanted = page.strip("/").removesuffix(".md").removesuffix(".html")
     for exact in (wanted, f"{wanted}/index"):
@@ -141,7 +141,7 @@ def _named(page: str, pages: dict[str, Path]) -> str | None:
 def _open(name: str, texts: dict[str, Path], built: dict[str, Path]) -> None:
     """Open a page of the built manual in a browser.
 
-    UsageError: the manual was not built as a site, or there is no browser.
+    Raises UsageError if the manual was not built as a site, or if there is no browser.
     """
     import webbrowser
 

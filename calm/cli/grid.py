@@ -33,9 +33,9 @@ def grid(
     The method is a Gaussian process over depth and time, whose scales are
     estimated from the record. Each value has a standard deviation, which includes
     the sensor error, the depth error times the local gradient, and the gap
-    between sensors. Each value has a flag: 8 if it lies between sensors at that
-    time, 3 if it lies beyond them or the data constrain it poorly, 9 if there is
-    no value.
+    between sensors. Each value has a flag. Flag 8 marks a value between sensors at
+    that time. Flag 3 marks a value beyond the sensors, or a value that the data
+    constrain poorly. Flag 9 marks a missing value.
 
     Parameters
     ----------

@@ -120,9 +120,10 @@ def load_ahead(environments: int, drawn: bool) -> None:
     import calm.checks.assess
     import calm.checks.recovery
     from calm.checks.situations import SOLVES
-    from calm.solve import expect_many
+    from calm.solve import expect_many, load_line_solver
 
     expect_many(SOLVES * environments)
+    load_line_solver()
     if drawn:
         import calm.report.check_report  # noqa: F401
         from calm.drawing.typesetting import signs

@@ -35,10 +35,11 @@ def locate(
 
     Outliers are reported, and rejected if enough ranges remain. The result is the
     position with its 95 % ellipse and the depth with its interval; CALM warns if
-    the ship's positions constrain them poorly. If two positions fit, both are
-    reported, with weights from their distances to the planned position, compared
-    with the usual fallback of an anchor. The exit code is 1 if both remain
-    possible. Acoustic rays are assumed to be straight.
+    the ship's positions constrain this result poorly. If two positions fit, both
+    are reported, the more likely one first. The likelihood depends on the fit and
+    on the distance from the planned position, relative to the usual fallback of
+    an anchor. The exit code is 1 if both remain possible. Acoustic rays are
+    assumed to be straight.
 
     Parameters
     ----------

@@ -62,9 +62,10 @@ def option(name: str) -> str:
 
 
 def show_units(given: str | None, files: Iterable[MooringFile] = ()) -> None:
-    """Set the units of tables and reports: `given`, or else the units on which all files agree.
+    """Set the units of tables and reports to those in `given`, or else to those of the files.
 
-    UsageError: the text contains an unknown dimension or unit.
+    If the files have different units, SI is used. Raises UsageError if the text contains an unknown
+    dimension or unit.
     """
     from calm.errors import nearest
     from calm.files.logbook import nearest_unit
@@ -94,8 +95,8 @@ def show_units(given: str | None, files: Iterable[MooringFile] = ()) -> None:
 def quantities(**given: tuple[str | None, str]) -> dict[str, float]:
     """Convert quantities given as options to SI units and degrees.
 
-    Each parameter is the text of the option (None if absent) and its dimension. UsageError: lists
-    all texts that are not quantities of their dimension.
+    Each parameter is the text of the option (None if absent) and its dimension. Raises UsageError
+    with all texts that are not quantities of their dimension.
     """
     from calm.units import QuantityError, parse_quantity
 
@@ -149,7 +150,8 @@ def span_of(option: str, text: str, between: tuple[float, float], in_words: str)
 def draws_of(uncertainty: bool, samples: int) -> tuple[int, int] | None:
     """Return the number of samples and the seed for `--uncertainty`; None without this option.
 
-    UsageError: the number of samples is not a power of two, or was given without `--uncertainty`.
+    Raises UsageError if the number of samples is not a power of two, or is given without
+    `--uncertainty`.
     """
     from calm.case.draws import SAMPLES, checked_samples
 

@@ -33,9 +33,7 @@ _SIGNS = "°×–−→≤≥²³█▒◦≈"  # characters in the tables
 
 
 def prepare() -> None:
-    """Set up the output streams so that characters they cannot show are replaced by ASCII or by
-    ``?``.
-    """
+    """Set up the output streams: ASCII or ``?`` replaces characters that a stream cannot show."""
     codecs.register_error(_ERROR_HANDLER, _transliterated)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
@@ -57,7 +55,7 @@ def show(text: str, *, styled: bool = False) -> None:
     pipes get the text unchanged. A reader that stops early (``calm run m.yaml | head``) causes no
     error.
 
-    UsageError: the output cannot be written, e.g. because the disk is full.
+    Raises UsageError if the output cannot be written, e.g. because the disk is full.
     """
     try:
         print(text if styled or not _on_terminal() else printable(text), end="", flush=True)
@@ -112,7 +110,7 @@ def narrate_card(card: ReadCard) -> None:
 def save(path: Path, content: bytes, then: str = "") -> None:
     """Write a file, and report its path on standard error, followed by the text `then`.
 
-    UsageError: the file cannot be written.
+    Raises UsageError if the file cannot be written.
     """
     from calm.report.folder import write_file
 
@@ -227,8 +225,8 @@ class Outputs:
     def __post_init__(self) -> None:
         """Reject invalid outputs before anything is solved.
 
-        Raises UsageError for a path that cannot be written, is used twice or is that of a mooring
-        file, looks like an option, or has an unknown suffix.
+        Raises UsageError if a path cannot be written, is used twice, is the path of a mooring file,
+        looks like an option, or has an unknown suffix.
         """
         from calm.report.folder import check_destination
         from calm.report.provenance import moment
@@ -258,10 +256,10 @@ class Outputs:
                 check_destination(path)
 
     def write_answer(self, document: Callable[[], dict[str, Any]], part: ReportPart | None) -> None:
-        """Write the result of a command without input files: the JSON document if requested, and
-        the part unless JSON is printed.
+        """Write the result of a command without input files.
 
-        `document` is called only if JSON is requested; the version of CALM is added to the
+        The JSON document is written if requested. `part` is printed, unless the JSON document is
+        printed. `document` is called only if JSON is requested; the version of CALM is added to the
         document. Raises UsageError if a file cannot be written.
         """
         from calm.report.result_files import to_json

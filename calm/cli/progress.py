@@ -34,10 +34,10 @@ _FIRST_LINE, _NEXT_LINES = 10.0, 60.0  # seconds without a terminal
 
 
 class ProgressTeller:
-    """Progress display in one line of the terminal, which is called with the `Progress` of a batch.
+    """Progress display in one line of the terminal; a call with a `Progress` updates the display.
 
-    The display waits for `patience` [s] before it appears on a terminal. Without `patience`, time
-    is counted from the first call.
+    With `patience` [s], the display appears when this time has passed since its creation. Without
+    `patience`, the elapsed time is counted from the first call.
     """
 
     def __init__(self, patience: float | None = None) -> None:
@@ -105,7 +105,7 @@ def grouped(number: int) -> str:
 
 
 def progress(items: Iterable[_Task], what: str, total: int | None = None) -> Iterator[_Task]:
-    """Yield the items; on a terminal, the progress is shown if they take long.
+    """Yield the items; on a terminal, show the progress if the items take long.
 
     Parameters
     ----------

@@ -167,7 +167,7 @@ def _refuse_one_name(moorings: Sequence[Design]) -> None:
     from calm.checks.finding import HANDLING_LABEL, OWN
 
     names = Counter(mooring.file.environment.name or OWN for mooring in moorings)
-    names[HANDLING_LABEL] += 1  # has a separate column
+    names[HANDLING_LABEL] += 1  # this name heads a column of its own
     for name, count in names.items():
         if count > 1:
             raise UsageError(f"{count} environments are named {name}; rename all but one")

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def _dash(_: object, tokens: Sequence[Token]) -> str:
-    """Return the value of `--json`, which must be ``-``. UsageError: it is another text."""
+    """Return the value of `--json`, which must be ``-``; raise UsageError otherwise."""
     if (value := tokens[0].value) != "-":
         raise UsageError(
             f"--json {value}: the value must be -, which prints the result; use -o FILE.json to "

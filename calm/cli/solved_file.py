@@ -135,7 +135,7 @@ def _solved(file: Path, line: Design) -> tuple[Result | None, NoEquilibrium | No
     try:
         return line.solve(), None
     except NoEquilibrium as failure:
-        for notice in line.file.notices:  # a result has them among its warnings
+        for notice in line.file.notices:  # with a result, its warnings include these notices
             narrate(f"{file}: {notice}")
         narrate(f"{file}: {failure}")
         return None, failure

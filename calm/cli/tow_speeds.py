@@ -41,13 +41,13 @@ class TabulatedTow:
         return ExitCode.NO_EQUILIBRIUM if failed else ExitCode.DONE
 
     def document(self) -> dict[str, Any]:
-        """The JSON object."""
+        """Return the JSON object."""
         from calm.report.tabulation import to_document
 
         return to_document(self.tabulation)
 
     def parts(self) -> list[TerminalPart]:
-        """The table, a row for each speed."""
+        """Return the table, with one row for each speed."""
         from calm.report.tabulation import tabulation_part
 
         return [tabulation_part(self.tabulation)]
@@ -101,11 +101,11 @@ def _swept(file: Path, tow: Design, speeds: Sequence[float]) -> TabulatedTow:
 
 
 def speed_range(text: str) -> list[float]:
-    """Return the speeds [m/s] of ``A:B:STEP``, from A up to B; B is included even if the last step
-    is shorter.
+    """Return the speeds [m/s] of ``A:B:STEP``, from A up to B.
 
-    UsageError: the text is not three speeds with their units, A or STEP is not positive, B is below
-    A, or there are more than `MOST_SPEEDS` speeds.
+    B is included even if the last step is shorter. Raises UsageError if the text is not three
+    speeds with their units, if A or STEP is not positive, if B is below A, or if there are more
+    than `MOST_SPEEDS` speeds.
     """
     from calm.units import QuantityError, parse_quantity
 

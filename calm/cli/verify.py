@@ -62,7 +62,7 @@ def verify(
 def _chosen(words: Sequence[str]) -> list[Source]:
     """Select the sources and cases whose names contain every word.
 
-    UsageError: no case contains all words.
+    Raises UsageError if no case contains all words.
     """
     from calm.verification import SOURCES
 

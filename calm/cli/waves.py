@@ -119,7 +119,7 @@ def _sea_states(
     """Read the sea states, their direction [degrees] and duration [s]. States and direction are
     None if not specified.
 
-    UsageError: lists all mistakes in the options.
+    Raises UsageError with all mistakes in the options.
     """
     from calm.errors import nearest
     from calm.records import sea_states

@@ -341,7 +341,7 @@ def down_the_line(sizes: Mapping[str, int]) -> list[Variable]:
 def station(name: str, place: Sequence[float], of_what: str) -> tuple[list[Variable], str]:
     """Create the CF station variables of a mooring.
 
-    The names to append to the attribute `coordinates` are returned with them.
+    Also return the names to append to the attribute `coordinates` of other variables.
 
     Parameters
     ----------

@@ -190,7 +190,8 @@ def deck_of(
     NoEquilibrium
         The mooring has no equilibrium in the first environment.
     UsageError
-        At `ship_speed` the line does not stream behind the ship, or not as far as `streamed`.
+        At `ship_speed`, the line does not stream behind the ship, or it cannot extend as far as
+        `streamed`.
     """
     first = moorings[0]
     notes: list[str] = []
@@ -289,8 +290,7 @@ def _name(mooring: Design) -> str:
 def surfacing(
     parts: Sequence[DeckItem], pieces: Collection[int], recovery: Recovery | None
 ) -> tuple[RecoveredItem, ...]:
-    """List the parts that rise: in order of surfacing, followed by those that stay below the
-    surface.
+    """List the rising parts in order of surfacing; parts that stay below the surface come last.
 
     If `recovery` is None, the times are None and the parts are in line order.
 

@@ -36,9 +36,9 @@ class DeckItem:
         [m]
     tilt : tilt from the vertical [degrees]
     tension : maximum tension in a piece [N]; None for a clamp
-    serial : serial number in the design, or serial numbers of all items of the part
-    deployed_serial, remark : serial number and remark in `deployed`; without an entry, the serial
-        number is that in the design
+    serial : serial numbers in the design, separated by commas; None if unknown
+    deployed_serial, remark : serial numbers and remark in `deployed`; without an entry, the serial
+        numbers are those in the design
     apart : whether connecting hardware is drawn in a separate row because it governs a check or has
         an open finding
     """

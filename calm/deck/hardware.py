@@ -54,8 +54,8 @@ class Cut:
     tolerance : allowed error of the length [m]
     effect : increase in depth of the top of the line or leg if the piece is longer by the fraction
         `LENGTH_ERROR` [m]; None if the longer line has no equilibrium
-    over, onto : sequence number in which a wire or rope goes over the side, and sequence number in
-        which the wire or rope is spooled onto the drum, which is the reverse; None for a chain
+    over, onto : number in the order in which wires and ropes go over the side, and number in the
+        reverse order, in which they are spooled onto the drum; None for a chain
     """
 
     item: DeckItem

@@ -99,14 +99,17 @@ class Tick(NamedTuple):
 
 
 def numbers(low: float, high: float, most: int) -> list[Tick]:
-    """Return about `most` ticks at round numbers between `low` and `high`, in either order."""
+    """Return about `most` ticks at round numbers between `low` and `high`.
+
+    `low` may be larger than `high`.
+    """
     low, high = min(low, high), max(low, high)
     values = round_numbers(low, high, most)
     return [Tick(value, number(value).replace("-", "\N{MINUS SIGN}")) for value in values]
 
 
 def counts(first: int, last: int, most: int) -> list[Tick]:
-    """Return ticks at whole numbers from `first` to `last`, about `most` at the most.
+    """Return about `most` ticks or fewer at whole numbers from `first` to `last`.
 
     The steps between the ticks are equal, round numbers.
     """

@@ -301,7 +301,7 @@ def along_the_line(shape: Shape) -> Floats:
 
 
 def named_parts(result: AnyResult) -> list[PictureMark]:
-    """Return all floats, instruments, releases and anchors, also if clamped, in file order."""
+    """Return all floats, instruments, releases and anchors, clamped or not, in file order."""
     parts = []
     for row, clamps in rows_down(result):
         ends = (

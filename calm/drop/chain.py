@@ -1,9 +1,9 @@
 """A line as a chain of straight bars between nodes, and the loads on the bars.
 
 A cable or chain is divided into bars, a rigid piece is one bar, and all pieces rigidly connected to
-the free end form one bar. A load is a piece, its share on one bar, or a clamp. Its force is
-distributed to the two nodes of the bar by the lever rule. In equilibrium, a bar then lies along the
-mean of the forces at its two ends, as in the other solvers of CALM.
+the free end form one bar. A load is a piece, the part of a piece on one bar, or a clamp. The force
+of a load is distributed to the two nodes of the bar by the lever rule. In equilibrium, a bar then
+lies along the mean of the forces at its two ends, as in the other solvers of CALM.
 """
 
 from dataclasses import dataclass

@@ -14,14 +14,14 @@ from calm.solve import Status
 from calm.solve.least_change import bracketed_root
 
 SKIN, THICKEST_SKIN = 5e-4, 0.3
-"""Thickness of the surface layer in which floats lose their buoyancy: as a fraction of the depth,
-and its upper limit [m].
+"""Thickness of the surface layer in which floats lose their buoyancy, as a fraction of the depth,
+and upper limit of this thickness [m].
 """
 AT_REST = 1e-7
 """Motion per time step, as a fraction of the depth, below which the line is at rest."""
 UNMOVED = 1e-10
-"""Motion in a time step, as a fraction of the depth, that is due to rounding: the line is at rest,
-and the longest time step follows.
+"""Motion per time step, as a fraction of the depth, below which the motion is due to rounding. The
+longest time step then follows.
 """
 MAX_STEP = 1e6
 """Length of the longest time step [s], after which a line is at rest."""
@@ -282,7 +282,7 @@ def _slowed(mover: Mover, state: ChainState, streamed: float) -> ChainState:
         return _streamed(state) - streamed
 
     share, least = 1.0, min(SLOWEST_FLOW / whole, 0.5)
-    # downwards in halves, since a jump to a far slower flow may fold the line
+    # halve the flow repeatedly, since a jump to a far slower flow may fold the line
     while excess(share := max(0.5 * share, least)) > 0.0:
         if share == least:
             raise UsageError(

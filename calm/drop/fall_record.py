@@ -14,7 +14,7 @@ from calm.files.pieces import clamps_in, holds_instrument
 from calm.physics.line import Floats, Integers
 
 OVERSHOOT = 0.05
-"""Depth below the final position [m] from which a part is reported to go deeper during the drop."""
+"""A depth during the drop is reported if it exceeds the depth at rest by more than this [m]."""
 MOMENTS = 5
 """Number of shapes from release to touchdown; the shape at rest is additional."""
 
@@ -117,8 +117,8 @@ def piece_ends(chain: BarChain, state: ChainState) -> tuple[Floats, Floats]:
 def end_tensions(mover: Mover, state: ChainState, *, within: bool = False) -> Floats:
     """Return the tensions (n, 2) at the upper and the lower end of every bar [N].
 
-    A bar under compression has zero tension. Compression occurs just after the release, when the
-    anchor pushes the adjacent pieces, where a real line would become slack.
+    A bar under compression has zero tension. Just after the release, the anchor pushes the adjacent
+    pieces, which are then under compression. A real line would become slack there.
 
     Parameters
     ----------

@@ -40,17 +40,17 @@ class Launch:
     Attributes
     ----------
     fall_speed : touchdown speed of the anchor [m/s], positive down
-    fall_speed_band : two touchdown speeds [m/s] from a repeated last time step, first with twice
-        and then with half the anchor drag and the tangential drag of cables, chains and cylinders;
-        NaN if the repeated step has no solution
+    fall_speed_band : two touchdown speeds [m/s], for which the last time step is repeated with
+        changed drag. The anchor drag and the tangential drag of the line are doubled for the first
+        speed, and halved for the second. NaN if the repeated step has no solution
     anchor_tension : maximum load of the line on the anchor [N]
     drift : velocity of the anchor to the east and to the north at touchdown [m/s]
     tension_top, tension_bottom : (n,) maximum tension at the ends of every piece above the anchor,
         from release to touchdown [N]
     anchor_drag_known : False if the anchor has no `kt`, so that the drag of a cube is assumed
     greatest_speed, greatest_tension : largest touchdown speed [m/s], and largest tension (n,) in
-        every piece [N]; if the drag of the anchor is unknown, these include a last time step
-        without that drag
+        every piece [N]. If the drag of the anchor is unknown, the last time step is repeated
+        without this drag, and its results are included
     tangles : indices of pieces that are upside down at touchdown, wholly or in part, because the
         line above has overtaken them
     """

@@ -136,8 +136,7 @@ def loads_on(
 
 def _diagonal(matrices: Floats) -> Floats:
     """Return the diagonals (3, k) of matrices (3, 3, k), as a view."""
-    view: Floats = np.einsum("iik->ik", matrices)
-    return view
+    return matrices.reshape(9, -1)[::4]
 
 
 def _products(one: Floats, other: Floats) -> Floats:
@@ -153,9 +152,9 @@ def _friction(
 
     Returns
     -------
-    The drag along the axis, its derivative by the tangential flow, its derivative by the speed,
-    multiplied by the speed, and for Hoerner's law the drag parallel to the flow divided by the
-    flow. None means zero.
+    Drag along the axis; derivative of this drag by the tangential flow; derivative of this drag by
+    the speed, divided by the speed; for Hoerner's law, drag parallel to the flow, divided by the
+    speed. None means zero.
     """
     law = chain.line.friction
     straight = kt * np.sqrt(along**2 + slowest**2)

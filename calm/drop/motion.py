@@ -25,8 +25,8 @@ LINEAR_DRAG_SPEED = 10.0
 rest [m/s].
 """
 CHANGE = 1e-5
-"""Tolerance of the last change of a position, as a fraction of the line length, and of a tension,
-as a fraction of the sum of all weights. The remaining error is of the order of the square of this
+"""Tolerance of the last change: for a position, as a fraction of the line length; for a tension, as
+a fraction of the sum of all weights. The remaining error is of the order of the square of this
 tolerance.
 """
 BEARING_DEPTH = 1e-4
@@ -75,12 +75,17 @@ class ChainState:
     node : (n+1, 3) positions of the nodes to the east, to the north and up [m]
     tension : (n,) tension at the midpoint of the bars [N]
     velocity : (n+1, 3) mean velocities of the nodes in the last time step [m/s]
+    acceleration, tightening : (n+1, 3), (n,) rates of change of velocity and tension in the last
+        time step [m/s², N/s]; 0 if they are not known
     """
 
     time: float
     node: Floats
     tension: Floats
     velocity: Floats
+    acceleration: Floats | float = 0.0
+    tightening: Floats | float = 0.0
+    lasted: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -119,11 +124,13 @@ class Mover:
         variation = self.variation(state)
         gently = gently or not state.velocity.any()
         node = state.node + (0.0 if gently else step) * state.velocity
+        steady = 0.0 if gently or step > 1.1 * state.lasted else step
+        node += steady**2 * state.acceleration
         if self.held:
             node[-1] = state.node[-1]
         if self.tether is not None:
             node[0, :2] = self.tether
-        tension = state.tension.copy()
+        tension = state.tension + steady * state.tightening
         reach = float(self.chain.length.sum())
         slowest = LINEAR_DRAG_SPEED if gently else SLOWEST
         nearer = np.inf
@@ -139,7 +146,12 @@ class Mover:
             if close and np.abs(moved[:-1, 3]).max() < CHANGE * self.scale and slowest == SLOWEST:
                 if _overturned(state.node, node):
                     break
-                return ChainState(state.time + step, node, tension, (node - state.node) / step)
+                velocity = (node - state.node) / step
+                acceleration = (velocity - state.velocity) / step
+                tightening = (tension - state.tension) / step
+                return ChainState(
+                    state.time + step, node, tension, velocity, acceleration, tightening, step
+                )
             if slowest == SLOWEST and farthest > max(nearer, 0.1 * reach):
                 break
             nearer, slowest = farthest, max(0.2 * slowest, SLOWEST)

@@ -204,7 +204,7 @@ equilibrium.
 DRAG_BAND = 2.0
 """Uncertainty factor on the drag of the anchor."""
 ERROR_SAFETY = 2.0
-"""Safety factor in the error estimates, on the changes for steps and bars of twice the length."""
+"""Safety factor of the error estimates, applied to the changes for doubled steps and bars."""
 LEAST_TIME_ERROR = 5e-4
 """Smallest relative error of the fall time, in case the estimated error is small by chance."""
 

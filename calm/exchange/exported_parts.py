@@ -22,7 +22,7 @@ AS_A_POINT = (
 )
 """Loss reported for a float that is exported by `ExportedLine.float_as_point`."""
 
-_LEAST_MASS = 0.1  # smallest mass, as a share of the mass with its net force as weight
+_LEAST_MASS = 0.1  # smallest mass, as a share of the net force divided by gravity
 
 Coordinates = tuple[float, float, float]
 """East and north of the anchor, and depth [m]."""

@@ -189,7 +189,7 @@ def _value(name: str, kind: str, header: dict[str, str], rows: list[str]) -> Mat
     given = (header.get(key, "") for key in ("rows", "columns"))
     stated = [int(text) if text.isdigit() else 0 for text in given]
     if math.prod(stated) != numbers.size and bare and numbers.size % len(bare) == 0:
-        return numbers.reshape(len(bare), -1)  # the header was edited: the lines count
+        return numbers.reshape(len(bare), -1)  # the header was edited: each line is a row
     return _shaped(name, numbers, stated, order="C")
 
 

@@ -249,9 +249,9 @@ class Agreement:
     Attributes
     ----------
     count : number of times with both depths
-    bias : mean of computed minus measured depth [m]
-    rms : root mean square of computed minus measured depth, after subtraction of its mean over the
-        calm times [m]
+    bias : mean difference, computed minus measured depth [m]
+    rms : root mean square of this difference, after the mean difference at calm times has been
+        subtracted [m]
     r : correlation of computed and measured depths
     slope : regression slope of computed on measured depths
     """

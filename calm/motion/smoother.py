@@ -74,9 +74,9 @@ class Smoothed:
     ----------
     times : slice of the times
     mean, covariance : (b, q) mean and (b, q, q) covariance of the states
-    pull, hold : vector r (b, q) and matrix N (b, q, q) of Durbin and Koopman. Given all readings,
-        the state noise before each time has mean Q r and covariance Q - Q N Q, where Q is its prior
-        covariance
+    pull, hold : vector r (b, q) and matrix N (b, q, q) of Durbin and Koopman. Let Q be the prior
+        covariance of the state noise before each time. Given all readings, this noise has the mean
+        Q r and the covariance Q - Q N Q
     """
 
     times: slice

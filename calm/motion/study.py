@@ -50,9 +50,9 @@ class HeldOut:
     Attributes
     ----------
     count : number of times with good pressures of this sensor and of all sensors in use
-    bias : mean of estimated minus measured depth [m]
-    rms : root mean square of estimated minus measured depth, after subtraction of its mean over the
-        calm times [m]
+    bias : mean difference, estimated minus measured depth [m]
+    rms : root mean square of this difference, after the mean difference at calm times has been
+        subtracted [m]
     linear_rms, pchip_rms : as `rms`, but for depths interpolated between the sensors in use, with
         the functions `linear` and `pchip` of `calm.motion.remarks` [m]
     coverage : share of the differences within the 95 % interval of the estimate
@@ -82,7 +82,7 @@ class MotionEstimate:
     diagnosis : faults of sensors, line and currents, with sizes and odds
     fits : whether the line is consistent with the pressures
     remarks : doubts about the data, in sentences
-    false : for each level by name, the times at which its current is probably false
+    false : times at which the current at a level is probably false, by name of the level
     notes : notes on the input, in sentences
     """
 
@@ -281,7 +281,9 @@ def judge_hidden(
     spread: Floats,
     still: Floats,
 ) -> HeldOut:
-    """Compare the estimate, and two interpolations between other sensors, with a withheld sensor.
+    """Compare the depths of a withheld sensor with the estimate and with two interpolations.
+
+    The depths are interpolated between the sensors in use.
 
     Parameters
     ----------
@@ -324,7 +326,9 @@ def cross_validated(
     tell: Callable[[str], None],
     workers: int | None = None,
 ) -> list[HeldOut]:
-    """Withhold each sensor in turn, in addition to `hidden`, and compare the estimate with it.
+    """Estimate the depth of each sensor from the other sensors, and return the errors.
+
+    Each sensor is withheld in turn, in addition to the sensors in `hidden`.
 
     Parameters
     ----------

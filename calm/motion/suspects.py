@@ -3,7 +3,7 @@
 Faults of the line and its currents are: currents that read too low or too high, missing floats,
 wrong cable lengths, wrong drag, and drag that increases by fouling. Some of these have nearly the
 same effect on the depths; their odds then show that the record cannot distinguish them. The module
-also finds readings of two sensors that are farther apart than the length of the line between them.
+also finds readings that differ in depth by more than the length of line between the two sensors.
 """
 
 from __future__ import annotations
@@ -61,8 +61,8 @@ def line_suspects(task: Task, read: ReadCurrents, at: Linear, share: Floats) -> 
     Parameters
     ----------
     read : currents at several times
-    at : depths of the line in these currents, with slopes with respect to the logarithm of a factor
-        on all speeds
+    at : depths of the line in these currents, and derivatives of the depths with respect to the
+        logarithm of a factor on all speeds
     share : elapsed share of the record at the times with an equilibrium
     """
     factors = task.common.factors
@@ -99,12 +99,12 @@ which a meter is reported.
 def meter_remarks(measured: MooringMeasurements, names: Sequence[str]) -> list[str]:
     """Return a remark on each current meter with rotated or mirrored readings, or a wrong unit.
 
-    A meter is reported if it disagrees with the two nearest meters although these agree with each
-    other. Agreement is measured by the complex correlation r of the currents over the whole record.
-    The phase of r is the mean angle between the two currents (Kundu 1976, J. Phys. Oceanogr. 6,
-    238-242). For n independent times, the phase has the standard deviation
-    sqrt((1 - r²) / (2 r² n)). Exchanged east and north components are found from the correlation
-    with the mirrored current.
+    A meter is reported if it disagrees with its two nearest meters, and these two meters agree with
+    each other. Agreement is measured by the complex correlation r of the currents over the whole
+    record. The phase of r is the mean angle between the two currents (Kundu 1976, J. Phys.
+    Oceanogr. 6, 238-242). For n independent times, the phase has the standard deviation
+    sqrt((1 - r²) / (2 r² n)). A correlation with the mirrored current indicates that the east and
+    north components are exchanged.
     """
     flow = np.where(measured.flag <= GOOD, measured.u + 1j * measured.v, np.nan)
 
@@ -174,11 +174,11 @@ def distances_of(mooring: Design) -> Floats:
 def torn(
     measured: MooringMeasurements, distance: Floats, hidden: Collection[str] = ()
 ) -> tuple[MooringMeasurements, list[str]]:
-    """Remove readings of two sensors that are farther apart in depth than along the line.
+    """Remove readings that differ in depth by more than the length of line between the sensors.
 
-    The reading that is farther from the median of its sensor is removed. If half or more of the
-    readings of a sensor would be removed, all its readings are kept. Return the measurements, and
-    notes on the removal.
+    Of two such readings, the reading that is farther from the median of its sensor is removed. If
+    half or more of the readings of a sensor would be removed, all its readings are kept. Return the
+    measurements, and notes on the removal.
 
     Parameters
     ----------
@@ -215,8 +215,8 @@ def common_step(measured: MooringMeasurements, still: Floats) -> Fault | None:
 
     Such a step means that the whole mooring has moved to another depth. A current lowers the lowest
     sensor less than the highest sensor, whereas a sinking mooring lowers all sensors equally. The
-    search is for records without measured currents, where inferred currents would otherwise explain
-    the step.
+    search is needed for records without measured currents, because inferred currents would
+    otherwise explain the step.
 
     Parameters
     ----------

@@ -45,8 +45,8 @@ SURFACE, DECAY, LEAST = 0.3, 400.0, 0.03
 constant [m/s].
 """
 ALL, EACH, ALIKE = 0.7, 1.4, 0.5
-"""Deviations of the logarithm of the prior speed, common to all knots and for each knot, and the
-share of the knots over which these are correlated.
+"""Standard deviations of the logarithm of the prior speed: common to all knots, and of each knot.
+The third value is the correlation length of the deviations of the knots, as a share of their range.
 """
 PRIOR = 20.0
 """Weight of the prior distribution, as a number of times of the record."""
@@ -71,8 +71,8 @@ SEABED = 0.0005
 It is small because, without measured currents, the factor on the length absorbs larger errors.
 """
 LEAST_PART, HIGH, HIGH_KNOWN = 5.0, 3.0, 0.1
-"""Percentile taken as the shallowest depth of a sensor, height above its still-water depth from
-which that depth is in doubt [m], and relative uncertainty of this height.
+"""Percentile taken as the shallowest depth of a sensor; height of this depth above the still-water
+depth, from which the still-water depth is in doubt [m]; and relative uncertainty of this height.
 """
 AGAIN = 3
 """Number of iterations at a time, starting from a stored fit."""
@@ -181,11 +181,12 @@ def learn_currents(
 
 
 def raised(mooring: Design, measured: MooringMeasurements) -> float:
-    """Return measured minus still-water depth [m] of the sensor that is farthest above its place.
+    """Return the depth error [m] of the sensor that is farthest above its still-water depth.
 
-    Currents only lower a line. If the shallowest readings of a sensor are far above its place in
-    still water, the water depth, a length or the place in the file is wrong. The result is
-    negative, or 0 if no sensor is far above its place.
+    The error is the depth of the shallowest readings minus the depth in still water. The result is
+    negative, or 0 if no sensor is far above its still-water depth. Currents only lower a line. A
+    large error therefore means that the water depth, a length or the position of the sensor in the
+    file is wrong.
     """
     still = Forward(mooring, {}).still
     depth = measured.depth - measured.moved[:, None]

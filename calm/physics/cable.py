@@ -60,7 +60,6 @@ march accepts the segment.
 """
 
 
-@within
 def strain_at(cable: CableStretch, knots: Sequence[Knot], tension: float) -> float:
     """Return the strain of a cable at a tension [N], from its elongation curve or compliance."""
     if cable.first_knot == cable.end_knot:
@@ -68,13 +67,11 @@ def strain_at(cable: CableStretch, knots: Sequence[Knot], tension: float) -> flo
     return curve_strain(knots, cable.first_knot, cable.end_knot, tension)
 
 
-@within
 def segment_lift(cable: CableStretch, cut: float, density: float, gravity: float) -> float:
     """Return the net buoyancy [N], positive up, of a segment with unstretched length `cut` [m]."""
     return cut * (cable.buoyancy + (density - REFERENCE_DENSITY) * gravity * cable.volume)
 
 
-@within
 def segment_area(cable: CableStretch, cut: float, density: float, strain: float) -> float:
     """Return the drag area of a segment, as a length of unstretched cable [m].
 
@@ -89,7 +86,6 @@ def segment_area(cable: CableStretch, cut: float, density: float, strain: float)
     return area
 
 
-@within
 def segment_drag(
     friction: int,
     kn: float,
@@ -130,8 +126,8 @@ def pass_segment(
 
     Parameters
     ----------
-    near : allowed distance between the midpoint of the segment and the depth at which the water is
-        sampled [m]; 0 requires full precision
+    near : allowed error of the depth at which the water is sampled for a segment [m]; 0 requires
+        full precision
     expected : initial estimate of the load per metre, from the segment above [N/m]
 
     Returns
@@ -239,7 +235,9 @@ def vibrating_share(
     ty: float,
     tz: float,
 ) -> tuple[float, float]:
-    """Return the result of `drag_share` for a strumming cable, and the factor on its normal drag.
+    """Return the result of `drag_share` for a strumming cable, and the strumming factor.
+
+    The strumming factor is the normal drag divided by the normal drag without strumming.
 
     Parameters
     ----------
@@ -485,8 +483,8 @@ def switch_at(vibration: Vibration, sea: Sea, state: State, law: int) -> float:
 
     If `law` is `OF_FRICTION`, the quantity is the flow along the cable, positive down the line,
     times the tension [N m/s]; friction of constant size reverses with this flow. If `law` is
-    `OF_STRUMMING`, the quantity is the largest factor by which strumming may increase Cn, minus the
-    factor without this limit [-].
+    `OF_STRUMMING`, the quantity is the upper limit of the strumming factor minus the factor before
+    this limit is applied [-].
     """
     _, _, z, fx, fy, fz, _, level = state
     u, v, w, _, _ = water_at(sea, -z, level)
@@ -549,11 +547,12 @@ def rate_of_turn(
     tz: float,
     angle_step: float,
 ) -> float:
-    """Return the ratio of tension to allowed segment length [N/m], with the load at a given depth.
+    """Return the tension of a cable divided by its allowed segment length [N/m].
 
-    `t` is the axis of the cable. If the tension is little more than the weight of the line below,
-    the tension decreases along a segment, which therefore rotates faster and faster. For this
-    reason, a term for the decrease of the tension is added to the term for the rotation.
+    The load is computed for a given depth. `t` is the axis of the cable. If the tension is little
+    more than the weight of the line below, the tension decreases along a segment, which therefore
+    rotates faster and faster. For this reason, a term for the decrease of the tension is added to
+    the term for the rotation.
     """
     u, v, w, density, _ = water_at(sea, depth, level)
     lift = segment_lift(cable, 1.0, density, sea.gravity)

@@ -1,10 +1,11 @@
-"""Compilation of the physics functions ("laws") to machine code, from the source that CPython runs,
-too.
+"""Compilation of the physics functions ("laws") to machine code, from the same source that
+CPython runs.
 
 A *law* is a function of floats, named tuples and sequences of named tuples that CPython can run
-directly. For compiled laws sequences are arrays, and sequences of named tuples arrays of records.
-`calm.physics.law_compiler` translates a law and all laws that it calls, and LLVM makes machine
-code, which the user's cache keeps. The arithmetic is not reordered, so both give the same digits.
+directly. In compiled laws, sequences are arrays, and sequences of named tuples are arrays of
+records. `calm.physics.law_compiler` translates a law and all laws that it calls, and LLVM makes
+machine code, which is stored in the user's cache. The arithmetic is not reordered, so compiled and
+interpreted laws give the same digits.
 """
 
 import ctypes
@@ -30,17 +31,30 @@ SOURCES = ("physics", "solve", "batch")
 
 OPTIMISATION = 1
 """Level of LLVM's optimisation, which never changes a digit."""
+QUICK = ("always_inliner", "sroa", "simplify_cfg", "instruction_combine")
+"""LLVM's passes for most laws. They take a tenth of the time of its level 1, and the code is a
+twentieth slower.
+"""
 
 Fn = TypeVar("Fn", bound=Law)
 
 
 def within(law: Fn) -> Fn:
-    """Mark a short function for inlining into its callers."""
+    """Mark a function for inlining into its callers, although it is not short."""
     _within.add(law)
     return law
 
 
 _within: set[Law] = set()
+
+
+def optimised(law: Fn) -> Fn:
+    """Mark a law that runs so long in each call that all passes of `OPTIMISATION` pay."""
+    _optimised.add(law)
+    return law
+
+
+_optimised: set[Law] = set()
 
 
 def set_row(rows: Any, i: int, row: Any) -> None:
@@ -58,9 +72,7 @@ class Compiled:
     def __init__(self, law: Law, kinds: tuple[Any, ...], result: Any) -> None:
         self._given, self._result = Layout(Row(None, kinds)), Layout(result)
         self._nothing = result == NOTHING
-        address = _address_of(
-            law, kinds, lambda program: program.add_entry(_ENTRY, law, kinds, result)
-        )
+        address = _address_of(law, kinds, result)
         self._call = ctypes.CFUNCTYPE(None, ctypes.c_char_p, ctypes.c_char_p)(address)
 
     def __call__(self, *arguments: Any) -> Any:
@@ -68,27 +80,6 @@ class Compiled:
         result = ctypes.create_string_buffer(self._result.size)
         self._call(self._given.written(arguments), result)
         return None if self._nothing else self._result.read(result.raw)
-
-
-class Addressed:
-    """A compiled law that takes a named tuple and a number, and returns a number.
-
-    Other compiled laws call this law by its `address`, so they do not contain its code.
-    """
-
-    def __init__(self, law: Law, task: Any) -> None:
-        self._task = Layout(task)
-        self.address = _address_of(
-            law, task, lambda program: program.add_function(_ENTRY, law, task)
-        )
-        self._call = ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_char_p, ctypes.c_double)(
-            self.address
-        )
-
-    def __call__(self, task: Any, x: float) -> float:
-        """Call the law without blocking other threads."""
-        found: float = self._call(self._task.written(task), x)
-        return found
 
 
 _entries: dict[Law, Any] = {}
@@ -115,25 +106,14 @@ def outcome(law: Law, compiled: bool, *given: Any) -> Any:
     return (entry(law, *given) if compiled else law)(*given)
 
 
-def by_address(law: Law, task: Any) -> Addressed:
-    """Compile a law that other laws call by its address.
-
-    The law takes a named tuple and a number. The argument `task` is an example of this named tuple.
-    """
-    with _lock:
-        if law not in _entries:
-            _entries[law] = Addressed(law, kind_of(task))
-        found: Addressed = _entries[law]
-        return found
-
-
 _ENTRY = "calm.entry"
 _engines: list[Any] = []
 
 
-def _address_of(law: Law, kinds: Any, add: Callable[[Any], None]) -> int:
-    """Return the address of a law's machine code for kinds of arguments, from the cache or compiled
-    now.
+def _address_of(law: Law, kinds: tuple[Any, ...], result: Any) -> int:
+    """Return the address of the machine code of a law for given kinds of arguments.
+
+    The code is read from the cache, or compiled if the cache does not contain it.
 
     Raise UsageError if LLVM does not work, or ModuleNotFoundError if it is not installed.
     """
@@ -159,12 +139,18 @@ def _address_of(law: Law, kinds: Any, add: Callable[[Any], None]) -> int:
         from calm.physics.law_compiler import Program
 
         program = Program(_within)
-        add(program)
+        program.add_entry(_ENTRY, law, kinds, result)
         module = llvm.parse_assembly(program.text())
         module.triple, module.data_layout = target.triple, str(target.target_data)
         tuning = llvm.create_pipeline_tuning_options(OPTIMISATION)
         builder = llvm.create_pass_builder(target, tuning)
-        builder.getModulePassManager().run(module, builder)
+        if law in _optimised:
+            passes = builder.getModulePassManager()
+        else:
+            passes = llvm.create_new_module_pass_manager()
+            for step in QUICK:
+                getattr(passes, f"add_{step}_pass")()
+        passes.run(module, builder)
         code = target.emit_object(module)
         if file:
             _store(file, code)
@@ -203,7 +189,7 @@ def fault() -> Exception | None:
 
 
 on_compilation: list[Callable[[], None]] = []
-"""Functions to call when a law is compiled that is not in the cache."""
+"""Functions to call before a law is compiled because the cache does not contain it."""
 
 
 def _store(file: Path, code: bytes) -> None:
@@ -221,8 +207,9 @@ def _store(file: Path, code: bytes) -> None:
 
 
 def _stored(file: Path) -> bytes:
-    """Return the machine code in a file of the cache; nothing if it is not what was written, since
-    LLVM ends the process at some damaged files.
+    """Return the machine code in a file of the cache, or nothing if the file is damaged.
+
+    The check is needed because some damaged files make LLVM end the process.
     """
     try:
         whole = file.read_bytes()
@@ -256,7 +243,7 @@ def _machine() -> Any:
 
 @cache
 def _machine_name() -> str:
-    """Return a short name of this machine and of LLVM's version, whose machine code is kept."""
+    """Return a short name of this machine and LLVM version, which is part of the file names."""
     import llvmlite.binding as llvm
 
     features = sorted(llvm.get_host_cpu_features().items())
@@ -269,7 +256,7 @@ def _short_name(given: Any) -> str:
 
 
 def _in_c(name: str) -> int:
-    """Return the address of a function of the C library, which CPython's `math` calls, too."""
+    """Return the address of a function of the C library that CPython's `math` also calls."""
     windows: Any = getattr(ctypes, "cdll", None)
     library = windows.ucrtbase if sys.platform == "win32" else ctypes.CDLL(None)
     address = ctypes.cast(getattr(library, name), ctypes.c_void_p).value

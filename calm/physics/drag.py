@@ -65,7 +65,7 @@ def interpolated(xs: Sequence[float], ys: Sequence[float], x: float) -> float:
 
 
 def finite_length_factor(slenderness: float) -> float:
-    """Return the factor κ ≤ 1 on the drag coefficient of a cylinder due to its finite length.
+    """Return the factor κ ≤ 1 by which the finite length of a cylinder reduces its drag.
 
     The factor is linear in the logarithm of L/D between the points of a table, and constant for L/D
     below 1 and above 100.
@@ -144,9 +144,10 @@ def measured_drag(speeds: Sequence[float], forces: Sequence[float]) -> float:
 
 
 class Friction(Enum):
-    """Tangential drag law of a cable or chain; the value is its name in files.
+    """Tangential drag law of a cable or chain.
 
-    V is the current, t the unit vector along the cable, and Vt = (V·t) t. The drag per metre is
+    The value of a member is the name of the law in files. V is the current, t the unit vector along
+    the cable, and Vt = (V·t) t. The drag per metre is
 
     - ``berteaux``: Kt |Vt| Vt, along the cable, with Kt = ½ρ Ct πD (Berteaux, Buoy Engineering,
       1976);
@@ -202,7 +203,7 @@ Vector = tuple[float, float, float]
 def drag_share(ax: float, ay: float, az: float, k: float, vx: float, vy: float, vz: float) -> float:
     """Return the factor c for which the axis of a freely rotating element is parallel to A + c V.
 
-    V is the current. A is the force that rotates the element, apart from the normal drag. c is the
+    V is the current. A is the force that rotates the element, without the normal drag. c is the
     smallest non-negative root of c |A + c V| = k |V × A|.
 
     Parameters
@@ -256,7 +257,6 @@ def drag_share(ax: float, ay: float, az: float, k: float, vx: float, vy: float, 
     return c
 
 
-@within
 def share_step(aa: float, av: float, vv: float, target: float, c: float) -> Vector:
     """Return three quantities for a Newton step towards c |A + c V| = target.
 
@@ -321,14 +321,12 @@ def axis_along(
     return axis_against(x, y, z)
 
 
-@within
 def axis_against(x: float, y: float, z: float) -> Vector:
     """Return the unit axis opposite to a nonzero force."""
     size = sqrt(x * x + y * y + z * z)
     return -x / size, -y / size, -z / size
 
 
-@within
 def drag_force(
     kn: float, kt: float, vx: float, vy: float, vz: float, tx: float, ty: float, tz: float
 ) -> Vector:

@@ -9,7 +9,7 @@ from math import acos, asin, isnan, nan, pi, sin, sqrt
 from typing import NamedTuple
 
 AIR_DENSITY = 1.225
-"""Density of the air above the water [kg/m³], that of the standard atmosphere at sea level."""
+"""Density of the air above the water [kg/m³], from the standard atmosphere at sea level."""
 
 AWASH = 0.02
 """Reserve buoyancy, as a fraction of the buoyancy, below which the parts above the surface are
@@ -46,9 +46,10 @@ class Hull:
     rows: tuple[HullRow, ...] = ()
 
     def curve(self, share: float) -> tuple[float, float]:
-        """Return the draft and the immersed lateral area if a fraction of the volume is displaced.
+        """Return the draft and the immersed lateral area of a partly immersed hull.
 
-        All quantities are fractions of those of the whole hull.
+        `share` is the displaced volume. All quantities are fractions of the values for the whole
+        hull.
         """
         return immersed_shares(self.form, self.rows, share)
 
@@ -125,8 +126,7 @@ class Riding(NamedTuple):
     ----------
     draft, freeboard : draft and freeboard [m]; NaN if the hull is unknown
     standing : fraction of the float's height that is above the water
-    above : fraction, 0 to 1, of the pieces rigidly connected above the float that is out of the
-        water
+    above : fraction out of the water, 0 to 1, of the pieces rigidly connected above the float
     drag : drag at the surface divided by the drag when fully immersed
     push_east, push_north : wind force to the east and north [N]
     """

@@ -124,7 +124,10 @@ class Program:
         self.declared: dict[str, str] = {}
 
     def translated(self, law: Law, kinds: tuple[Any, ...]) -> tuple[str, Any]:
-        """Translate a law for given argument kinds. Return its symbol and the result's kind."""
+        """Translate a law for given kinds of arguments.
+
+        Return the symbol of the translated law, and the kind of the law's result.
+        """
         if (law, kinds) in self.open:
             raise TypeError(f"{law.__name__} calls itself")
         if (law, kinds) not in self.laws:
@@ -141,10 +144,10 @@ class Program:
         return self.laws[law, kinds]
 
     def add_entry(self, symbol: str, law: Law, kinds: tuple[Any, ...], wanted: Any) -> None:
-        """Add a function that calls a law with arguments and result in memory.
+        """Add a function that calls a law; the arguments and the result are in memory.
 
-        The function has two arguments. The first is the address of the law's arguments. The second
-        is the address to which the result is written, converted to the kind `wanted`.
+        The first argument of the function is the address of the law's arguments. The second
+        argument is the address of the result. The result is converted to the kind `wanted`.
         """
         given = Held(Row(None, kinds), "%given")
         entry = Instructions(self)
@@ -154,20 +157,6 @@ class Program:
         body = "\n".join([*entry.reserved, *entry.lines])
         self.texts.append(
             f'define void @"{symbol}"(ptr %given, ptr %result) nounwind {{\n{body}\nret void\n}}'
-        )
-
-    def add_function(self, symbol: str, law: Law, task: Any) -> None:
-        """Add a function that calls a law with a named tuple and a number, and returns a number.
-
-        The named tuple is passed by its address.
-        """
-        entry = Instructions(self)
-        _, result = entry.call_law(law, [Held(task, "%task"), Number(REAL, "%x")])
-        value = entry.as_kind(result, REAL).text
-        body = "\n".join([*entry.reserved, *entry.lines])
-        self.texts.append(
-            f'define double @"{symbol}"(ptr %task, double %x) nounwind {{\n{body}\n'
-            f"ret double {value}\n}}"
         )
 
     def declare(self, name: str, numbers: int) -> None:
@@ -194,14 +183,16 @@ class Uncompilable(TypeError):
     """Raised if a function uses Python that a law must not use."""
 
 
+SHORT = 40
+"""Number of instructions below which a law is inlined into its callers."""
 RESULT = "return"
 
 
 class _Body(Instructions):
     """Translation of the body of a law.
 
-    `known` are the kinds of its variables and of its result. If one is `widened` by a later
-    statement, for example from whole to real numbers, the law is translated again.
+    `known` holds the kinds of the variables and of the result. If a later statement widens a kind,
+    for example from whole to real numbers, `widened` is true and the law is translated again.
     """
 
     def __init__(
@@ -231,6 +222,9 @@ class _Body(Instructions):
 
     def take_argument(self, name: str, word: str, kind: Any) -> None:
         """Bind an argument."""
+        if isinstance(kind, Global):
+            self.names[name] = kind
+            return
         if isinstance(kind, Row):
             self.words.append(f"ptr {word}")
             value: Any = Held(kind, word)
@@ -248,7 +242,7 @@ class _Body(Instructions):
         result, words = self.known.get(RESULT, NOTHING), self.words
         if not isinstance(result, str):
             words, result = ["ptr %result", *words], "void"
-        how = "alwaysinline nounwind" if inlined else "nounwind"
+        how = "alwaysinline nounwind" if inlined or len(self.lines) < SHORT else "nounwind"
         lines: list[str] = []
         for line in self.lines:
             lines += line if isinstance(line, list) else [line]
@@ -269,7 +263,7 @@ class _Body(Instructions):
         self.emit(f"br i1 {test.text}, label %{yes}, label %{no}")
 
     def widen(self, name: str, kind: Any) -> Any:
-        """Return the kind of a variable after another value was set."""
+        """Return the kind of a variable after another value has been assigned."""
         known = self.known.get(name)
         if known is None:
             self.known[name] = kind
@@ -395,9 +389,10 @@ class _Body(Instructions):
         return reached
 
     def finish(self, node: Any, ends: bool, over: str, end: str) -> bool:
-        """Translate what follows a loop that is `over` without `break`, if it ever `ends` so.
+        """Translate the `else` part of a loop, and begin the code after the loop.
 
-        Return whether the next statement can be reached.
+        `over` is the label that a loop without `break` reaches, and `ends` is whether a loop can
+        end in this way. Return whether the next statement can be reached.
         """
         if ends:
             self._start(over)
@@ -455,7 +450,7 @@ class _Body(Instructions):
     # expressions
 
     def refuse(self, part: Any) -> None:
-        """Refuse a part of Python that laws do not use."""
+        """Reject a construct of Python that laws must not use."""
         if part:
             what = part[0] if isinstance(part, list) else part
             raise TypeError(f"laws have no {ast.unparse(what)} here")
@@ -642,7 +637,10 @@ class _Body(Instructions):
         return gap
 
     def one_of(self, values: list[Any], later: list[list[str]]) -> Any:
-        """Return the value whose branch is followed; each is written at the place left for it."""
+        """Return the value of the branch that is followed.
+
+        Each value is written at the place in `later` that was left for this value.
+        """
         kind = values[0].kind
         for each in values:
             kind = common(kind, each.kind)
@@ -699,9 +697,6 @@ class _Body(Instructions):
         self.refuse(node.keywords and node.keywords[0].value)
         called = self.of(node.func)
         given = [self.of(each) for each in node.args]
-        if not isinstance(called, Global):
-            task, x = self.address_of(given[0]), self.as_kind(given[1], REAL)
-            return self.value(REAL, f"call double {called.text}(ptr {task}, double {x.text})")
         function = called.value
         if isinstance(function, FunctionType):
             if function.__name__ == "set_row":

@@ -6,7 +6,6 @@ from typing import Any, NamedTuple
 
 from calm.physics.law_kinds import (
     BY_NAME,
-    FUNCTION,
     NOTHING,
     REAL,
     TRUTH,
@@ -53,9 +52,17 @@ class ArrayView(NamedTuple):
 
 
 class Global(NamedTuple):
-    """A function, class or module to which the source of a law refers."""
+    """A function, class or module to which the source of a law refers.
+
+    If a law passes a function to another law, the other law is translated for this function.
+    """
 
     value: Any
+
+    @property
+    def kind(self) -> "Global":
+        """Kind of an argument that is this function."""
+        return self
 
 
 def number_of(value: Any) -> Number:
@@ -68,13 +75,13 @@ def number_of(value: Any) -> Number:
 
 
 def row_of(members: Any, named: Any = None) -> Made:
-    """Combine values into a tuple. The class of the tuple is `named`, if this is given."""
+    """Combine values into a tuple of the class `named`, or into a plain tuple."""
     members = tuple(members)
     return Made(Row(named, tuple(each.kind for each in members)), members)
 
 
 MOST_COPIED_ONE_BY_ONE = 8
-"""Largest number of numbers that are copied without a call."""
+"""Largest count of numbers that are copied without a call."""
 
 
 class Instructions:
@@ -108,7 +115,10 @@ class Instructions:
         return name
 
     def at(self, address: str, place: int | str, unit: int = 1) -> str:
-        """Return the address that is `place` times `unit` words of eight bytes after an address."""
+        """Return an address plus an offset.
+
+        The offset is `place` times `unit`, in words of eight bytes.
+        """
         if place in (0, "0"):
             return address
         name = self.fresh()
@@ -165,7 +175,7 @@ class Instructions:
         """Return a sequence as an `ArrayView`."""
         if isinstance(array, ArrayView):
             return array
-        data = self.value(FUNCTION, f"load ptr, ptr {array.address}").text
+        data = self.value("ptr", f"load ptr, ptr {array.address}").text
         shape = [
             self.value(WHOLE, f"load i64, ptr {self.at(array.address, k)}").text
             for k in range(1, array.kind.dimensions + 1)
@@ -220,6 +230,8 @@ class Instructions:
         symbol, kind = self.program.translated(law, kinds)
         words = []
         for each in given:
+            if isinstance(each, Global):
+                continue
             if isinstance(each.kind, Row):
                 words.append(f"ptr {self.address_of(each)}")
             elif isinstance(each.kind, Array):

@@ -1,7 +1,7 @@
 """Kinds of the values of compiled laws, and their layout in memory.
 
-Every number takes eight bytes. A sequence is the address of its first number and its shape. A named
-tuple is a row of numbers, whether it is a value or an element of a sequence.
+Every number takes eight bytes. A sequence is represented by the address of its first number and by
+its shape. A named tuple is a row of numbers, whether it is a value or an element of a sequence.
 """
 
 import ctypes
@@ -12,15 +12,19 @@ from typing import Any, NamedTuple, get_args, get_type_hints
 
 import numpy as np
 
-REAL, WHOLE, TRUTH, FUNCTION = "double", "i64", "i1", "ptr"
-"""Kinds of single numbers, by their names in LLVM. A function is given by its address, and takes a
-named tuple and a number.
-"""
+REAL, WHOLE, TRUTH = "double", "i64", "i1"
+"""Kinds of single numbers, by their names in LLVM."""
 BY_NAME: dict[Any, str] = {float: REAL, int: WHOLE, bool: TRUTH}
 
 
 class Row(NamedTuple):
-    """Kind of a tuple, with the class of a named tuple (else None) and the kinds of the members."""
+    """Kind of a tuple.
+
+    Attributes
+    ----------
+    named : class of a named tuple; None for any other tuple
+    members : kinds of the members
+    """
 
     named: Any
     members: tuple[Any, ...]
@@ -73,7 +77,7 @@ def common(one: Any, other: Any) -> Any:
 
 
 FROM_MATH = ("log", "pow", "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "exp", "floor")
-"""Functions that the C library computes, for CPython as well."""
+"""Functions that CPython and compiled laws take from the C library."""
 
 
 @cache
@@ -104,8 +108,6 @@ def kind_of(value: Any, hint: Any = None) -> Any:
             return Array(_number_kind(value.dtype), value.ndim)
         kinds = tuple(_number_kind(own[0]) for own in fields.values())
         return Array(Row(_records[value.dtype], kinds), value.ndim)
-    if hasattr(value, "address"):
-        return FUNCTION
     return BY_NAME[type(value)]
 
 
@@ -114,7 +116,7 @@ def _number_kind(of: Any) -> str:
 
 
 def kind_asked(hint: Any) -> Any:
-    """Return the kind of a result from the type hint of the function."""
+    """Return the kind of result that a type hint declares."""
     if hint in BY_NAME:
         return BY_NAME[hint]
     if hint in (None, type(None)):
@@ -143,17 +145,13 @@ class Layout:
 
 
 def _layout_of(kind: Any, given: str) -> tuple[str, list[str]]:
-    """Return the codes of the numbers of a value for `struct`, and the expressions that read
-    them.
-    """
+    """Return the `struct` codes of the numbers in a value, and the expressions that read them."""
     if isinstance(kind, Row):
         parts = [_layout_of(each, f"{given}[{i}]") for i, each in enumerate(kind.members)]
         return "".join(codes for codes, _ in parts), [word for _, words in parts for word in words]
     if isinstance(kind, Array):
         shape = [f"{given}.shape[{k}]" for k in range(kind.dimensions)]
         return "q" * (1 + len(shape)), [f"address_of({given})", *shape]
-    if kind == FUNCTION:
-        return "q", [f"{given}.address"]
     return "d" if kind == REAL else "q", [given]
 
 

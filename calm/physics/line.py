@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 class MarchError(ArithmeticError):
     """Raised if a march cannot continue.
 
-    The forces or moments on an element do not balance, the line extends without limit, or the line
-    needs too many segments.
+    A march stops if the forces or moments on an element do not balance, if the line extends without
+    limit, or if the line needs too many segments.
     """
 
 
@@ -70,12 +70,12 @@ class Bed(NamedTuple):
     excess: float
 
 
-@within
 def off_bed(bed: Bed, x: float, y: float, z: float) -> float:
     """Return the height of a point above the seabed plane.
 
-    The vector x, y, z leads from a point on the plane to the point. If the vector is a force, the
-    result is the component of the force normal to the plane, times √(1 + tan² slope).
+    x, y, z are the coordinates of the point relative to any point on the plane. If x, y, z are the
+    components of a force, the result is the component of the force normal to the plane, times
+    √(1 + tan² slope).
     """
     return z + bed.east * x + bed.north * y
 
@@ -103,7 +103,6 @@ part that is marched in two halves; level that splits a segment.
 """
 
 
-@within
 def write_node(record: Record, n: int, state: State) -> None:
     """Write the position [m] of a state, and the force above it [N], to node n of a record."""
     x, y, z, fx, fy, fz, _, _ = state
@@ -115,7 +114,6 @@ def write_node(record: Record, n: int, state: State) -> None:
     record[5][n] = fz
 
 
-@within
 def write_element(
     record: Record, n: int, piece: int, clamp: int, cut: float, strain: float
 ) -> None:
@@ -215,6 +213,24 @@ def once_per_input(make: Callable[[_Given], _Made]) -> Callable[[_Given], _Made]
     return stored
 
 
+def once_at_rest(make: Callable[[Line, Water], _Made]) -> Callable[[Line, Water], _Made]:
+    """Decorate a function of a line and its water whose result does not depend on the current.
+
+    The last result is stored in the line. It is used again in all water that is the same at rest.
+    """
+    name = f"{make.__module__}.{make.__qualname__}"
+
+    @wraps(make)
+    def stored(line: Line, water: Water) -> _Made:
+        kept = vars(line).get(name)
+        if kept is None or not water.same_at_rest(kept[0]):
+            kept = vars(line)[name] = water, make(line, water)
+        result: _Made = kept[1]
+        return result
+
+    return stored
+
+
 _DTYPES: dict[str, Any] = {"Floats": np.float64, "Integers": np.intp, "Booleans": np.bool_}
 
 _OfArrays = TypeVar("_OfArrays", bound=_Arrays)
@@ -302,8 +318,8 @@ class Line(_Arrays):
         metre grows; 1/2 if the volume is conserved (cables), 0 for chains
     clamp_piece : (m,) index of the piece to which each instrument is clamped
     clamp_at : (m,) distance from the top of that piece along its unstretched length [m]
-    clamp_buoyancy, clamp_volume, clamp_drag : (m,) net buoyancy [N], displaced volume [m³], and K
-        of the drag K|V|V [N/(m/s)²]
+    clamp_buoyancy, clamp_volume, clamp_drag : (m,) net buoyancy [N], displaced volume [m³], and
+        drag factor K, where the drag is K|V|V [N/(m/s)²]
     anchor_height : height of the end of the line above the seabed [m]
     lift, clamp_lift : (n,), (m,) hydrodynamic lift at 1 m/s, positive up [N/(m/s)²]; 0 by default
     diameter : (n,) diameter of cables and chains [m]; 0, the default, means no strumming
@@ -313,8 +329,8 @@ class Line(_Arrays):
     towed : whether the free end is towed; rigid pieces at a towed end are not rigidly connected to
         each other
     push_east, push_north : (n,) force of the wind on a piece [N]; 0 by default
-    floating : properties with which the first float rides at the surface; if None, a float that
-        reaches the surface is placed just below the surface
+    floating : surface properties of the first float; if None, a float that reaches the surface is
+        placed just below the surface
     elongation : (n,) elongation curves of cables, which replace their `compliance`; None for other
         pieces; () if no cable has a curve
     drag_curve, clamp_drag_curve : (n,), (m,) curves of the normal drag of smooth spheres and
@@ -502,6 +518,14 @@ class Water(_Arrays):
     def still(self) -> Water:
         """Return a copy of the water without current."""
         return replace(self, u=(zero := np.zeros_like(self.u)), v=zero, w=zero)
+
+    def same_at_rest(self, other: Water) -> bool:
+        """Return whether the water has the same depth, density and gravity as other water."""
+        return self is other or (
+            (self.depth, self.gravity) == (other.depth, other.gravity)
+            and np.array_equal(self.level, other.level)
+            and np.array_equal(self.density, other.density)
+        )
 
     def current_at(self, depth: Floats) -> Floats:
         """Return the current (..., 3) [m/s] at depths [m] in an array of any shape."""

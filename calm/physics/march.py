@@ -39,7 +39,7 @@ class Cuts(NamedTuple):
     counts: Integers
 
     def halved(self) -> Cuts:
-        """Return segments that are the halves of these segments."""
+        """Return twice as many segments, each half as long."""
         return Cuts(np.repeat(0.5 * self.lengths, 2), 2 * self.counts)
 
     def first(self, cables: int) -> Cuts:

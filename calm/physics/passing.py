@@ -51,8 +51,8 @@ unstretched length on the seabed [m]; reason why the march stopped, see `calm.ph
 LEFT = 10
 
 SHORT = 1e-6
-"""Segment length, as a fraction of the longest segment, below which the load on a segment does not
-serve as an estimate for the next.
+"""Segment length, as a fraction of the longest segment, below which the load on a segment is not
+used as an estimate for the next segment.
 """
 EXACT, ROUGH = 1e-12, 1e-3
 """Relative change of the mean flow along a segment above which the segment is split at a level: at
@@ -69,11 +69,11 @@ class MarchSettings(NamedTuple):
     ----------
     angle_step : largest rotation of a segment [rad]
     reach : largest length of a segment [m]
-    near : allowed distance between a load and the depth at which the water is sampled [m]; 0
-        requires full precision
+    near : allowed error of the depth at which the water is sampled for a load [m]; 0 requires full
+        precision
     stages : number of stages to march
-    lands : whether the line may touch down. A touchdown is below the last buoyant piece, where the
-        force normal to the seabed vanishes; the rest of the line then lies on the seabed
+    lands : whether the line may touch down. The touchdown is the point below the last buoyant piece
+        where the force normal to the seabed vanishes; the rest of the line lies on the seabed
     bed : the seabed
     given : whether the segments are given; otherwise the march chooses them
     exact : whether segments are split at every level of the water profile; otherwise they are split
@@ -109,8 +109,8 @@ def pass_line(
 
     Parameters
     ----------
-    out : length of line above the surface at the free end [m], which determines the depth instead;
-        0 if no part is above the surface
+    out : length of line above the surface at the free end [m]; 0 if no part is above the surface.
+        If `out` is not 0, the depth of the free end is computed from `out`
     cuts, counts : unstretched lengths of the segments [m], and number of segments in each cable;
         these are input if the segments are given, otherwise output
     record : array to which nodes and elements are written

@@ -15,7 +15,8 @@ LEAST_PART = 0.01
 
 NEAR_A_LEVEL = 1e-6
 """Depth range beyond a level, as a fraction of the segment's depth range, below which the segment
-is not split at the level. Without this limit, every part would be split at a level without flow.
+is not split at the level. Without this limit, a segment would be split again and again at a level
+with no flow.
 """
 
 
@@ -116,12 +117,12 @@ def viscosity_at(sea: Sea, depth: float) -> float:
 def distance_to_bend(
     sea: Sea, depth: float, sinking: float, i: int, length: float, share: float
 ) -> float:
-    """Return the distance [m] along a path to the next kink of the drag.
+    """Return the distance [m] along a path to the next point where the drag has a kink.
 
-    The next kink is usually at the next level. If the flow almost vanishes before that level,
-    within the length of a segment, |V| V has a kink at the depth of minimum flow. A level nearer
-    than `LEAST_PART` times the segment length is skipped, unless a segment of the full length has
-    to be split there.
+    This point is usually at the next level. The drag is proportional to |V| V, and therefore also
+    has a kink at a depth where the flow almost vanishes. Such a depth is returned if it is reached
+    before the next level and within the length of a segment. A level nearer than `LEAST_PART` times
+    the segment length is skipped, unless a segment of the full length has to be split there.
 
     Parameters
     ----------
@@ -181,7 +182,6 @@ def level_within(sea: Sea, hint: int, start: float, end: float, share: float) ->
     return 0
 
 
-@within
 def counts_across(sea: Sea, k: int, off: float, length: float, share: float) -> bool:
     """Return whether a segment that crosses a level has to be split at the level.
 
@@ -275,7 +275,7 @@ profile_of = once_per_input(Profile)
 
 
 def _values_and_slopes(depths: list[float], column: Floats) -> tuple[list[float], list[float]]:
-    """Return value at the origin and slope for every interval; the outer two are constant."""
+    """Return value at the origin and slope for every interval; the outer slopes are zero."""
     values = column.tolist()
     slopes = [
         (values[i + 1] - values[i]) / (depths[i + 1] - depths[i]) for i in range(len(depths) - 1)

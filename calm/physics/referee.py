@@ -281,12 +281,14 @@ def worst_moment(
 ) -> float:
     """Return the largest angle between an element and the mean of the forces at its ends [rad].
 
-    The forces are sums of the loads. For cables, the strain is also compared with the strain that
-    these forces would cause; the result is the difference of the strains if this is larger than the
-    angles. The rounding error of the coordinates is subtracted from both, and elements on the
-    seabed are excluded. Towards a slack end the tension vanishes, so its direction is undetermined.
-    Near such an end, the errors due to the rounding of the largest tension and due to the tolerance
-    of the iterations are also subtracted.
+    The forces are sums of the loads. Elements on the seabed are excluded. For cables, the strain is
+    also compared with the strain that the forces would cause. If the largest difference between the
+    two strains exceeds the largest angle, this difference is returned instead.
+
+    The rounding error of the coordinates is subtracted from the angles and from the differences.
+    Towards a slack end the tension vanishes, so the direction of the force is undetermined. The
+    angles are therefore also reduced by the relative error of the force, which is due to rounding
+    and to the tolerance of the iterations.
     """
     rounding = ROUNDING * greatest_size(shape, 0)
     hanging = shape.hanging

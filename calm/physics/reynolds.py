@@ -136,8 +136,9 @@ def varying_share(
     -------
     c = k f(s) s [N/(m/s)] for the smallest root s = |Vn| of s |A + k f(s) s V| = |V × A|. Roots
     less than |V|/16 apart are not distinguished. In the drag crisis, where a lower speed causes
-    more drag, an element may be inclined in slow normal flow or upright in fast normal flow. When
-    the current grows from rest, the element takes the smallest root, which has more drag.
+    more drag, an element may have two positions: inclined with a slow normal flow, or upright with
+    a fast normal flow. When the current grows from rest, the element takes the smallest root, which
+    has more drag.
     """
     speed = sqrt(vx * vx + vy * vy + vz * vz)
     cx, cy, cz = ay * vz - az * vy, az * vx - ax * vz, ax * vy - ay * vx

@@ -71,8 +71,9 @@ def pass_rod(
 
     Returns
     -------
-    The state, in which the axis is `NO_BALANCE` if the rod has no balance; 0 if the rod lies on the
-    seabed, inf if it stands on the seabed, otherwise -1; and the number of nodes.
+    The state; a number that is 0 if the rod lies on the seabed, inf if the rod stands on the
+    seabed, and otherwise -1; and the number of nodes. The axis in the state is `NO_BALANCE` if the
+    rod has no balance.
     """
     x, y, z, fx, fy, fz, before, level = state
     tx, ty, tz = rod_axis(rod, loads, sea, state, near)

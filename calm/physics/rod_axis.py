@@ -21,15 +21,16 @@ def rod_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State, near: fl
 
     The axis t is parallel to F + Σ (1 - a_i/L) q_i, where F is the force above the rod, and the
     loads q_i act at distances a_i from the top of the rod. Since the drags depend on t, the
-    equation is solved by iteration. The normal drags are combined into one current and one drag
-    factor, which give the sum of these drags at the present axis. Each iteration then solves a
-    single element exactly, including its drag curve. Further iterations are needed only because the
-    flow varies along the rod, or because there are several drag curves.
+    equation is solved by iteration. The normal drags are replaced by the drag of a single element
+    with one current and one drag factor. At the present axis, this drag equals the sum of the
+    normal drags. Each iteration solves for the axis of this element exactly. If only one load has a
+    normal drag, the drag curve of this load is part of the exact solution. Further iterations are
+    needed only because the flow varies along the rod, or because there are several drag curves.
 
     Parameters
     ----------
-    near : allowed distance between a load and the depth at which the water is sampled [m]; 0
-        requires full precision
+    near : allowed error of the depth at which the water is sampled for a load [m]; 0 requires full
+        precision
 
     Returns
     -------
@@ -100,8 +101,8 @@ def bracketed_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State) ->
     the water at these depths, depend only on the vertical component ("rise") of the axis. In the
     water for a rise s, the axis in balance has a rise r(s) between -1 and 1, so r(s) - s changes
     sign. If r jumps, as for a float without net buoyancy at the upper edge of a current, the
-    bisection ends at the jump, where the moment on the rod may vanish. If the moment does not
-    vanish there, the rise is `NO_BALANCE`.
+    bisection ends at the jump. The moment on the rod may vanish at the jump; if it does not, the
+    rise of the result is `NO_BALANCE`.
     """
     low, high = -1.0, 1.0
     tx, ty, tz = 0.0, 0.0, -1.0
@@ -229,7 +230,6 @@ def _following_axis(
     return (-tx, -ty, -tz) if mx * tx + my * ty + mz * tz > 0.0 else (tx, ty, tz)
 
 
-@within
 def load_lift(load: Load, squared: float, density: float, gravity: float) -> float:
     """Return the sum of net buoyancy and hydrodynamic lift of a rigid piece or clamp [N].
 
@@ -274,7 +274,7 @@ def load_force(
 def load_variation(
     load: Load, viscosity: float, u: float, v: float, w: float, tx: float, ty: float, tz: float
 ) -> float:
-    """Return the factor by which the normal drag on a body differs from constant coefficients.
+    """Return the ratio of the normal drag on a body to the drag with constant coefficients.
 
     (tx, ty, tz) is the unit vector along the axis of the body. The viscosity is in m²/s.
     """
@@ -286,7 +286,6 @@ def load_variation(
     return drag_variation(Smooth(load.diameter / viscosity, load.lengthening), speed)
 
 
-@within
 def force_at(
     load: Load, sea: Sea, depth: float, level: int, tx: float, ty: float, tz: float
 ) -> Vector:

@@ -35,14 +35,14 @@ def lay_line(
     touchdown. Towards the anchor, the tension decreases by friction. The component of the weight
     along the line also decreases the tension if the line leads downslope, and increases the tension
     if the line leads upslope. The tension is never negative. There is no drag. A slack line lies
-    across the slope. A rigid piece or clamp at the touchdown that the line could not carry rests on
-    the seabed at a point.
+    across the slope. If the line cannot carry a rigid piece or clamp at the touchdown, this piece
+    or clamp stands on the seabed at a point.
 
     Parameters
     ----------
     stage, hanging : index of the stage with the touchdown, and unstretched length of this stage
-        above the seabed [m]. For a rod or clamp, the length is inf if it stands on the seabed, and
-        0 if it lies on the seabed
+        above the seabed [m]. The length is inf for a rod or clamp that stands on the seabed, and
+        0 for a rod or clamp that lies on the seabed
     record, recording, nodes : output for nodes and elements, whether to record them, and the number
         of nodes so far
 
@@ -80,8 +80,8 @@ def lay_line(
                 write_node(record, nodes, (x, y, z, fx, fy, fz, tz, level))
             nodes, grounded = nodes + 1, grounded + length
         elif hung == 0.0:
-            # the loads of a rod are listed downwards: for every piece its own, distributed along
-            # it, then its clamps
+            # the loads of a rod are listed downwards: for every piece its own load, which is
+            # distributed along the piece, then the loads of its clamps
             reached, end, own, length, last = 0.0, 0.0, 0.0, 0.0, first + here.size - 1
             for k in range(first, last + 1):
                 load = course.loads[k]
@@ -107,9 +107,10 @@ def lay_line(
 
 
 def held_back(tension: float, hold: float) -> tuple[float, float]:
-    """Return the fraction of a line's part that is under tension, and the tension at its end [N].
+    """Return the fraction of a part of a line that is under tension, and the tension at its end.
 
-    `hold` is the reduction of the tension along the whole part by friction and slope [N].
+    The part lies on the seabed and begins with the given tension [N]. `hold` is the decrease of the
+    tension along the whole part due to friction and slope [N].
     """
     if hold <= tension:
         return 1.0, tension - hold
@@ -164,10 +165,10 @@ def closure(
     """Return the relative difference between the sum of the loads and the force at a line's end.
 
     If part of the line lies on the seabed, the sum of the loads above the touchdown must have no
-    component normal to the seabed. Exceptions are a downward force at a rigid piece or clamp that
-    stands on the seabed, and an upward force less than the weight of a rigid piece that lies on the
-    seabed. Friction and the component of the weight along the line are taken into account for the
-    part on the seabed.
+    component normal to the seabed, with two exceptions: a downward force at a rigid piece or clamp
+    that stands on the seabed, and an upward force less than the weight of a rigid piece that lies
+    on the seabed. Along the part on the seabed, friction and the component of the weight along the
+    line are included.
 
     Parameters
     ----------

@@ -16,7 +16,8 @@ _GAUSS = sqrt(1.0 / 3.0)
 class Knot(NamedTuple):
     """A point of an elongation curve, and a cubic polynomial for the strain at higher tensions.
 
-    The strain is a + x (b + x (c + x d)), where x is the tension minus that of the point [N].
+    The strain is a + x (b + x (c + x d)), where x is the tension minus the tension at the point
+    [N].
     """
 
     tension: float
@@ -174,7 +175,7 @@ def _checked(points: Iterable[tuple[float, float]]) -> tuple[list[float], list[f
 def _cubics(xs: list[float], ys: list[float]) -> list[tuple[float, float, float, float]]:
     """Return the coefficients of y in powers of x - xs[i] for every interval.
 
-    The last ones apply beyond the last point.
+    The last entry is the straight line beyond the last point.
     """
     widths = [b - a for a, b in pairwise(xs)]
     chords = [(b - a) / h for (a, b), h in zip(pairwise(ys), widths, strict=True)]
@@ -188,7 +189,10 @@ def _cubics(xs: list[float], ys: list[float]) -> list[tuple[float, float, float,
 
 
 def _slopes(widths: list[float], chords: list[float]) -> list[float]:
-    """Return the slope at every point: a weighted harmonic mean; at the ends that of a parabola."""
+    """Return the slope at every point.
+
+    The slope is a weighted harmonic mean of the adjacent slopes or, at an end, that of a parabola.
+    """
     if len(chords) == 1:
         return [chords[0], chords[0]]
     slopes = [_end_slope(widths[0], widths[1], chords[0], chords[1])]

@@ -161,7 +161,7 @@ class Vibration(NamedTuple):
     greatest : largest factor by which strumming increases the cable's Cn [-]
     beat : dimensionless frequency F D/|V| of the cable at the local speed |V| [-], which is 0.166
         sin φ_n in a uniform flow of any speed. In the law for a whole line, `beat` is F [Hz]
-        instead, and in the law for one cable F D [m/s]
+        instead. In the law for one cable, `beat` is F D [m/s]
     """
 
     a1: float
@@ -209,9 +209,10 @@ def strummed_freely(vibration: Vibration, across: float) -> float:
 def amplified_share(
     ax: float, ay: float, az: float, k: float, vibration: Vibration, vx: float, vy: float, vz: float
 ) -> tuple[float, float]:
-    """Return the result of `drag_share` for a strumming cable, and the factor on its normal drag.
+    """Return the result of `drag_share` for a strumming cable, and the strumming factor.
 
-    The factor depends on the angle between the cable and the flow.
+    The strumming factor is the normal drag divided by the normal drag without strumming. The factor
+    depends on the angle between the cable and the flow.
 
     Parameters
     ----------
@@ -271,9 +272,9 @@ class BourgetMarichal:
     Attributes
     ----------
     a1, b1, c1 : coefficients of the amplitude ratio a/D = a1 + b1 φ + c1 φ², with φ in degrees. The
-        paper does not give the coefficients. The defaults reproduce the values that it does give
-        (a/D = 0.5 at 90° and, in its example, C* = 1.25 at the sphere and an angle of 16.28° at the
-        ship)
+        paper does not give the coefficients. The defaults reproduce published results: a/D = 0.5
+        at 90° and, in the example of the paper, C* = 1.25 at the sphere and an angle of 16.28° at
+        the ship
     rest : Cn of the cable without strumming, C₀; valid only for φ > 15°
     ceiling : largest allowed C*
     strouhal : Strouhal number of the cable, for the speed normal to the cable

@@ -224,9 +224,9 @@ class Track:
 def head_count(line: Line) -> int:
     """Return the number of pieces at the free end that form one rigid body.
 
-    The body consists of the pieces down to the first buoyant piece; pieces without buoyancy above
-    it (a beacon, ballast) are rigidly connected to the buoyant piece. The number is 0 if a cable
-    comes first or in between, if no piece is buoyant, or if the end is towed.
+    The body consists of the pieces down to the first buoyant piece. Pieces above the buoyant piece,
+    such as a beacon or ballast, are rigidly connected to the buoyant piece. The number is 0 if
+    there is a cable above the first buoyant piece, if no piece is buoyant, or if the end is towed.
     """
     if line.towed:
         return 0

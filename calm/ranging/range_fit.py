@@ -297,7 +297,7 @@ def _second(model: range_model.RangeModel, x: Floats, other: Floats, used: Boole
 
 
 def _scatter(residuals: Floats, freedom: int) -> float:
-    """Return the root of the mean square by degrees of freedom [m]; NaN if there are none."""
+    """Return the root of the sum of squares divided by the degrees of freedom [m], or NaN."""
     return sqrt(float(residuals @ residuals) / freedom) if freedom else nan
 
 
@@ -342,7 +342,7 @@ def _intervals(
 FAR = 2.0
 """Distance from the planned position, in water depths, above which the position is doubtful."""
 NEAR = 0.5
-"""Share of the distance below which degrees are assumed to be misread degrees and minutes."""
+"""Share of the distance to which reading degrees as degrees and minutes must reduce it."""
 DEEPER, DEEPER_SHARE = 30.0, 0.03
 """Difference from the planned depth above which the depth is doubtful: the larger of a value [m]
 and a share of the planned depth.

@@ -178,12 +178,12 @@ class RangeModel:
         return changed
 
     def consistency(self, x: Floats, used: Booleans) -> list[str]:
-        """Return a warning if a factor on all ranges, other than 1, clearly improves the fit.
+        """Return a warning if multiplying all ranges by a factor clearly improves the fit.
 
         Raises
         ------
         UsageError
-            The factor is about two, because one-way and two-way times were mixed.
+            The factor is about 2 or 0.5: one-way and two-way times or distances were confused.
         """
         from scipy.optimize import least_squares
         from scipy.stats import t as student
@@ -223,15 +223,16 @@ class RangeModel:
         return [f"{text}: were they taken with another speed of sound?"]
 
     def another_place(self, x: Floats, used: Booleans, scatter: float) -> Floats | None:
-        """Find another position that fits the ranges nearly as well, or within a given scatter.
+        """Find another position that fits the ranges nearly as well.
 
-        Return None if there is no such position. The search starts on both sides of the track.
+        A position also counts if its residuals are within a given scatter. Return None if there is
+        no such position. The search starts on both sides of the track.
 
         Parameters
         ----------
         x : unknowns of the fitted position
         used : mask of the ranges in use
-        scatter : root mean square residual that also counts as a fit [m]
+        scatter : largest root mean square residual that also counts as a fit [m]
         """
         starts = [mirrored(self.ships[used], self.place(x))[: len(x)], *self._starts()]
         fits = [self.least_squares(start, used) for start in starts]
@@ -273,8 +274,8 @@ NARROW = 0.15
 WIDEST_GAP = 180.0
 """Sector without a range above which all ranges count as taken from one side [degrees]."""
 NEAR, FAR = 0.2, 4.0
-"""Horizontal distances, in depths: ranges that are all nearer constrain the position poorly, ranges
-that are all farther the depth.
+"""Horizontal distances, as multiples of the depth. Ranges that are all nearer constrain the
+position poorly; ranges that are all farther constrain the depth poorly.
 """
 
 

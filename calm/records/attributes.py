@@ -58,7 +58,7 @@ def words_of(variable: xr.DataArray, *attributes: str) -> str:
 
 
 def not_a_value(variable: xr.DataArray, layers: Collection[str] = ()) -> str | None:
-    """Return the reason why a variable holds no values at single times and depths, or None.
+    """Return the reason why values of a variable do not belong to one time and depth, or None.
 
     The reason is either the cell methods of the variable (a spread, a climatology, a mean over
     depth) or a scale factor of zero.

@@ -124,7 +124,7 @@ def joined_cards(cards: Sequence[ReadCard]) -> ReadCard:
 def card_of_instruments(cards: Sequence[ReadCard]) -> ReadCard:
     """Merge the cards of the instruments in one file.
 
-    The median of a variable is the median over the instruments of their own medians.
+    The median of a variable is the median of the medians of the instruments.
     """
     variables = {}
     for role in {role: None for card in cards for role in card.variables}:

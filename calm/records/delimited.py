@@ -81,7 +81,7 @@ class Dialect:
         return [self.with_point(text) for text in found] if self.decimal == "," else found
 
     def column(self, line: str, cell: int) -> int:
-        """Return the position in a line, from 1, where a cell begins; 1 for a missing cell."""
+        """Return the position in a line, from 1, at which a cell begins; 1 for a missing cell."""
         placed = self._placed(line)
         return placed[cell][0] + 1 if cell < len(placed) else 1
 

@@ -30,8 +30,8 @@ def as_file(given: Given) -> Iterator[Path]:
 def as_files(given: Any, folder: Path, name: str) -> list[str]:
     """Write datasets and tables to a folder, and return the paths of all records.
 
-    A dataset must have the contents that CALM expects of a NetCDF file, and a table the columns
-    that it expects of a CSV file. The index of a table may hold the times.
+    A dataset must have the contents that CALM expects of a NetCDF file. A table must have the
+    columns that CALM expects of a CSV file. The index of a table may hold the times.
 
     Parameters
     ----------

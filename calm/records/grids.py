@@ -285,7 +285,7 @@ class SeabedGrid:
     ----------
     path, sha256 : path and checksum of the file
     latitude, longitude : origin of the mooring coordinates [degrees]
-    reach : distance from the origin, to each of the four sides, within which nodes are read [m]
+    reach : half the side of the square around the origin in which nodes are read [m]
     east, north : distances of the point east and north of the origin [m]
     """
 
@@ -345,7 +345,8 @@ class SeabedGrid:
     def slope(self) -> float:
         """Slope of the seabed at the point [degrees].
 
-        The slope is computed from the steepest gradients over one node spacing.
+        The gradient along each axis is the steeper of the two gradients over one node spacing, on
+        either side of the point.
         """
         across, along = np.abs(self._falls).max(axis=1)
         return float(np.degrees(np.arctan(np.hypot(across, along))))

@@ -28,9 +28,9 @@ _MAGNETIC = re.compile(r"(?i)\s*\bmag(netic)?$")
 def heading(column: str, dimensions: Sequence[str] = ()) -> tuple[str, str]:
     """Split a heading into its name and its unit; a missing unit is empty.
 
-    The unit is in brackets. If there are no brackets but `dimensions` are given, as keys of
-    `calm.units.DIMENSIONS`, the name ends where a known unit begins. Units of these dimensions are
-    preferred.
+    The unit is in brackets. If `dimensions` (keys of `calm.units.DIMENSIONS`) are given, a unit
+    without brackets is also found: the name ends where a known unit begins, preferably a unit of
+    one of these dimensions.
     """
     text = " ".join(column.split())
     bracketed = _BRACKETED.fullmatch(text)
@@ -139,7 +139,7 @@ class NamedColumns:
 
     Attributes
     ----------
-    factors : factor from the unit of each known column present to SI (degrees for angles), by name
+    factors : factor that converts a known column to SI units (degrees for angles), by name
     places : index of each known column in a row, by name
     rows : rows with as many cells as the header
     others : headings of the other columns

@@ -72,7 +72,7 @@ class Identity:
 
     @property
     def named(self) -> str:
-        """Label of the instrument; if missing, its serial number, else its file name."""
+        """Label, or else serial number, or else file name of the instrument."""
         return self.label or self.serial or self.source
 
 
@@ -85,7 +85,7 @@ class InstrumentSeries(Identity):
     time : (n,) increasing times, to the nanosecond
     value : (n,) values in the unit of the quantity; NaN if missing or rejected by a flag
     dropped : number of readings rejected by their flags
-    below : distance of a bin of a profiler below the instrument [m]
+    below : distance of a profiler's bin below the profiler [m]; 0 for other instruments
     note : remarks on doubts and assumptions
     card : summary card of the file
     pressure : median pressure in the file [dbar]; NaN without pressures
@@ -138,7 +138,7 @@ def read_series(
     seabed: float,
     usual: Mapping[str, float] = MappingProxyType({}),
 ) -> dict[str, list[InstrumentSeries]]:
-    """Read time series of several quantities from files; return a list of series by quantity name.
+    """Read time series from files, and return a list of series for each quantity name.
 
     Parameters
     ----------
@@ -471,11 +471,13 @@ def _decibars(variable: xr.DataArray, values: Floats) -> Floats:
 
 
 def named(dataset: xr.Dataset, sought: Sequence[str], usual: Sequence[str]) -> list[str]:
-    """Return the variables that have the first standard name of `sought` found in the dataset.
+    """Return the names of the variables of a quantity.
 
-    If no standard name is found, return the variables with a name in `usual`. Raise UnreadableError
-    if several variables have the standard name and none of them has a usual name, or if a variable
-    with a usual name has another standard name.
+    These are the variables with the first standard name of `sought` that occurs in the dataset. If
+    any of these variables has a name in `usual`, only such variables are returned. If no standard
+    name occurs, the variables with a name in `usual` are returned. Raise UnreadableError if several
+    variables have the standard name and none of them has a usual name, or if a variable with a
+    usual name has another standard name.
     """
     there = _standard(dataset, sought)
     known = [one for one in usual if one in (there or dataset.data_vars)]

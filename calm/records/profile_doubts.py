@@ -34,7 +34,7 @@ are shallower."""
 
 
 def direction_doubts(directions: Sequence[float], name: str) -> Iterator[str]:
-    """Yield a remark if directions appear to be in radians, or appear to be velocities instead.
+    """Yield a remark if directions appear to be in radians, or to be northward velocities.
 
     Parameters
     ----------

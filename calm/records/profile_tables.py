@@ -21,7 +21,7 @@ from calm.records.profile_doubts import direction_doubts
 from calm.units import DIMENSIONS, QuantityError, QuantityRange, unit_factor
 
 Report = Callable[[Sequence[str | int], str], Problem]
-"""Function that builds a problem from a place and a message.
+"""Function that creates a `Problem` for a place and a message.
 
 A place is ``("columns", j)`` or ``("rows", i, j)``.
 """
@@ -36,7 +36,7 @@ class QuantityTable:
     columns : names with units, such as ``"depth m"`` or ``"depth[m]"``; if a heading has no unit,
         each value in the column has its own unit
     rows : numbers, or quantities with a unit, as text
-    report : function that builds a mistake from a place and a message
+    report : function that creates a `Problem` for a place in the table and a message
     problems : list to which mistakes are added
     """
 
@@ -208,7 +208,7 @@ SALINITY = QuantityRange("salinity", at_least=0, at_most=42)
 """Limits of temperature and salinity: the range of validity of TEOS-10."""
 
 WATER_DENSITY = QuantityRange("density", at_least=900, at_most=1350)
-"""From fresh water under a glacier to the brines at the bottom of the Red Sea."""
+"""Limits of density: fresh water under a glacier, and the brines at the bottom of the Red Sea."""
 
 DENSITY = QuantityRange("density", above=0)
 

@@ -177,11 +177,11 @@ def choose_profiles(
 
 
 def part(index: Index, start: int, stop: int) -> Index:
-    """Return the indices in the file of a range of the chosen profiles.
+    """Return the file indices of a range of the chosen profiles.
 
     Parameters
     ----------
-    index : indices in the file of all chosen profiles
+    index : file indices of all chosen profiles
     start, stop : range of the chosen profiles, from `start` up to but not including `stop`
     """
     if not isinstance(index, slice):
@@ -232,7 +232,10 @@ _MISSING = -32767
 
 
 def made_record() -> bytes:
-    """Return a synthetic record as a classic NetCDF file, with equal bytes on all platforms."""
+    """Return a synthetic record as a classic NetCDF file.
+
+    The bytes are the same on all platforms.
+    """
     import xarray as xr
 
     hours = np.arange(24 * DAYS)

@@ -44,7 +44,7 @@ SHARES = 0.02
 """Tolerance for the sum of shares of time, which may be rounded."""
 
 CUT_OFF = 0.5
-"""Limit on a measured spectrum at its last frequency, as a share of its maximum density."""
+"""Largest density of a measured spectrum at its last frequency, as a share of the maximum."""
 
 _STANDARD_NAMES = (
     "sea_surface_wave_variance_spectral_density",
@@ -64,7 +64,10 @@ A sea of the shortest period has a hundredth of its variance above that frequenc
 
 @dataclass(frozen=True)
 class SpectralForm:
-    """A wave spectrum as a function and its parameters, so that equal spectra compare equal."""
+    """A wave spectrum, stored as a function and its parameters.
+
+    Two spectra are equal if the functions and the parameters are equal.
+    """
 
     law: Callable[..., Floats]
     figures: tuple[Any, ...]
@@ -83,8 +86,9 @@ class SeaState:
     peak_period : Tp [s]
     density : one-sided spectrum of the elevation [m² s/rad] over angular frequency [rad/s]
     share : share of the time for which this sea state lasts, in a set of several sea states
-    longest, shortest : longest and shortest peak period of a sea with several components [s]; for a
-        measured sea, `longest` is the period of the longest relevant waves
+    longest, shortest : longest and shortest peak period of a sea with several components [s]. For a
+        measured sea, `longest` is chosen so that `frequencies` begins at the lowest frequency with
+        appreciable energy
     """
 
     significant_height: float

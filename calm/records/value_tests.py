@@ -207,7 +207,7 @@ def sector_doubts(u: Floats, v: Floats) -> Iterator[str]:
 
 
 def _recurring(values: Floats, side: str) -> Iterator[str]:
-    """Yield a doubt if the largest value [m/s] recurs and far exceeds all others: a fill value?"""
+    """Yield a doubt if the largest value [m/s] recurs and far exceeds all other values."""
     largest = np.abs(values).max(initial=0.0)
     filled = np.abs(values) == largest
     others = values[~filled]
@@ -331,9 +331,9 @@ def step_doubts(times: Times) -> Iterator[str]:
 
 @dataclass(frozen=True)
 class WaterLimits:
-    """Limits of a sea-water quantity, its unit, and other units that are common for it.
+    """Limits and unit of a sea-water quantity, and other common units of this quantity.
 
-    Each value of `likely` is the factor and the offset that convert another unit to `unit`.
+    `likely` gives, for each other unit, the factor and the offset that convert values to `unit`.
     """
 
     least: float
@@ -385,10 +385,10 @@ def impossible_values(name: str, values: Floats) -> tuple[NDArray[np.bool_], str
 
 
 def exchanged_pair(values: Floats) -> tuple[int, int] | None:
-    """Find the only pair of levels whose exchange makes a profile monotonic.
+    """Find two levels whose exchange makes a profile monotonic.
 
-    Return None if the profile is already monotonic, or if no pair or more than one pair has this
-    effect.
+    Return None if the profile is already monotonic, if no pair of levels has this effect, or if
+    several pairs have this effect.
 
     Parameters
     ----------
@@ -486,7 +486,7 @@ def _unchanged(values: Floats, times: Times, names: Sequence[str]) -> Iterator[s
 
 
 def _interleaved(values: Floats) -> Iterator[str]:
-    """Yield a doubt if every second reading of a series repeats, as if two were interleaved."""
+    """Yield a doubt if every second reading of a series repeats, as if two series were mixed."""
     if len(values) < MANY:
         return
     next_one, second = (

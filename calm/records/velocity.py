@@ -234,7 +234,7 @@ _WHOSE = re.compile(r"(?:sensor|instrument|platform|station|mooring|serial)", re
 def refuse_ragged(dataset: xr.Dataset, name: str) -> None:
     """Raise UnreadableError if a variable holds the readings of several instruments in sequence.
 
-    The message names the other variable that assigns these readings to instruments.
+    The message names the variable that gives the instrument of each reading.
     """
     for index, variable in dataset.variables.items():
         many, counted = 0, variable.attrs.get("instance_dimension")
@@ -358,10 +358,11 @@ _GOOD_NAMES = re.compile(r"(?i)(perg|pg|pgd|percent_?good|prcnt_gd|pct_good)_?[1
 
 
 def good_variables(dataset: xr.Dataset, name: str) -> list[xr.DataArray]:
-    """Return the variables that add up to the share of good pings for a velocity.
+    """Return the variables whose sum is the share of good pings for a velocity.
 
     If a variable has one value per beam, the values of the first and the fourth beam are returned.
-    In earth coordinates, these are the shares of three-beam and of four-beam solutions.
+    In earth coordinates, the first value is the share of three-beam solutions, and the fourth value
+    is the share of four-beam solutions.
     """
     dims = set(dataset[name].dims)
     there = [

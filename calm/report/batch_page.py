@@ -82,10 +82,11 @@ def summary_report(summary: Summary) -> blocks.Report:
 
 
 _EXTRAPOLATED = (
-    f"Return levels are limited to {EXTRAPOLATION:.0f} times the length of the record. They "
-    "describe the response to currents like those recorded, not to events missing from a short or "
-    "gappy record, nor to a changing current regime. A fitted tail has no bounds: a tilt above 90° "
-    "or a knockdown below the seabed means that the record cannot be extrapolated so far."
+    f"Return periods are limited to {EXTRAPOLATION:.0f} times the length of the record. Return "
+    "levels describe the response to currents like those recorded. They do not include events that "
+    "a short or gappy record misses, or changes of the current regime. A fitted tail has no "
+    "bounds: a tilt above 90° or a knockdown below the seabed means that the record cannot be "
+    "extrapolated that far."
 )
 
 
@@ -116,8 +117,9 @@ def limits_table(summary: Summary) -> Table:
             number("worst value", lambda one: figure(one, one.worst)),
             words("when", lambda one: when(one.time), 0.0),
         ),
-        note="Strength is judged at the ends of a piece and at its clamps, minimum tension at the "
-        "ends. Anchor sliding: H + friction × V against friction × weight in water / factor.",
+        note="Strength is judged at the ends of a piece and at its clamps; minimum tension is "
+        "judged at the ends. For anchor sliding, the value is H + friction × V, and the limit is "
+        "friction × weight in water / factor.",
         sortable=True,
     )
 
@@ -222,8 +224,8 @@ _QUANTITIES = ("knockdown", "tilt", "tension")
 _PERIODS = (10, 50, 100)
 _ALL = (
     "The JSON file and the HTML page list all percentiles, limits and profiles. Depths and offsets "
-    "agree with `calm run` to 1e-4 of the water depth, tensions to 2e-4; individual profiles are "
-    "not audited."
+    "agree with `calm run` to 1e-4 of the water depth, and tensions to 2e-4 of the tension. "
+    "Individual profiles are not audited."
 )
 
 
@@ -341,7 +343,7 @@ def exceedance_figure(summary: Summary) -> str:
         one, limit = response.distribution, _limit_of(summary, response)
         curves = [] if one is None else [(one, Stroke(COLOURS[0], 1.5), "")]
         panels.append(_Panel(TITLES[response.name], QUANTITY[response.name], curves, limit))
-    return _shares("how often values are exceeded", panels, 150.0)
+    return _shares("how often each value is exceeded", panels, 150.0)
 
 
 def parts_figure(parts: Sequence[statistics.PartDistributions]) -> str:
@@ -356,7 +358,7 @@ def parts_figure(parts: Sequence[statistics.PartDistributions]) -> str:
             for (label, one), colour in zip(curves, COLOURS, strict=False)
         ]
         panels.append(_Panel(name, name, drawn))
-    return _shares("how often parts exceed values", panels, 200.0)
+    return _shares("how often each value is exceeded, by part", panels, 200.0)
 
 
 def _shares(title: str, panels: Sequence[_Panel], tall: float) -> str:

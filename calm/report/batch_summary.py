@@ -143,8 +143,8 @@ def rules_table(summary: Summary) -> Table:
         number("limits", lambda rule: len(rule.exceedances), narrow=False),
         words("most often exceeded by", _most_often),
         note="Shares refer to the profiles in which a rule is judged. “At most” also counts every "
-        "profile with a current that was not solved. A limit that is judged in no profile is "
-        "unknown.",
+        "profile with a current that was not solved. A limit counts as unknown if it could not be "
+        "judged in any profile.",
     )
 
 
@@ -200,9 +200,9 @@ DEFINITIONS = (
     "the record is evenly spaced. Means, percentiles, maxima and exceedance curves cover the "
     "solved profiles. Failure rates refer to the profiles in which a rule is judged; the upper "
     "bound (“at most”) also counts every profile with a current that was not solved.",
-    "Percentiles are interpolated linearly between the order statistics; the value of rank 1 + (n "
-    "- 1) p of n is the p quantile. The tension of a component is the larger of those at its two "
-    "ends; its knockdown and depth are at its upper end.",
+    "Percentiles are interpolated linearly between the sorted values: of n values, the p quantile "
+    "has rank 1 + (n - 1) p. The tension of a component is the larger of the tensions at its two "
+    "ends; its knockdown and depth are those of its upper end.",
 )
 """Definitions of the statistics, printed with the tables."""
 
@@ -248,7 +248,8 @@ def left_out(summary: Summary) -> str:
     return (
         f"{grouped(summary.unsolved)} of {grouped(with_current)} profiles with a current "
         f"({percent(summary.unsolved / with_current)} %) have no solution and are excluded from "
-        "all statistics, which are too low if these are the strongest currents."
+        "all statistics. If the strongest currents are among these profiles, the statistics are "
+        "too low."
     )
 
 
@@ -280,5 +281,6 @@ def stops_tables(summary: Summary) -> Iterator[Table]:
         words("profiler", 0),
         words("stop", 1),
         *(number(head, at) for at, head in enumerate(shares, 2)),
-        note="In the stated share of the profiles, the stop is no deeper than this.",
+        note="The percentage in a heading is the share of the profiles in which the stop is at "
+        "the tabulated pressure and depth, or shallower.",
     )

@@ -131,7 +131,7 @@ class Figure:
     Attributes
     ----------
     tall : whether the drawing may fill a page
-    aside, note : text next to the title, and below the drawing
+    aside, note : text next to the title, and text below the drawing
     """
 
     title: str
@@ -192,7 +192,15 @@ class Listing:
 
 @dataclass(frozen=True)
 class TitleBlock:
-    """Title block of a drawing: title with small text above and lines below, and named fields."""
+    """Title block of a drawing.
+
+    Attributes
+    ----------
+    above : small text above the title
+    title : title
+    below : lines below the title
+    fields : name and text of each field
+    """
 
     above: str
     title: str
@@ -267,7 +275,7 @@ Block = (
 class ReportPart:
     """Blocks under a heading.
 
-    `size` is the font size of tables in print [pt]; only listings have a smaller font.
+    `size` is the font size of tables in print [pt]. Listings have a smaller font.
     """
 
     title: str
@@ -371,7 +379,7 @@ def number(heading: str, show: Shown = "", unit: str = "", **more: Any) -> Field
 
 
 def of_first(*fields: Field) -> list[Field]:
-    """Convert columns for items to columns for rows in which the item is the first member."""
+    """Adapt columns of items to rows whose first member is the item."""
 
     def first(show: Callable[[Any], Any]) -> Callable[[Any], Any]:
         return lambda row: show(row[0])

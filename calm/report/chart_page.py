@@ -190,8 +190,8 @@ def _write_frame(figure: Figure, axes: Axes, k: float, above: bool) -> None:
 
 
 _LOCI = (
-    "The loci show the point P, at the abscissa y′ of the lower end A and the level z′ of the "
-    "upper end B.\nA and B lie on the curve. H: their difference in height. D: their distance. L: "
+    "The loci are drawn for the point P with the y′ of the lower end A and the z′ of the upper end "
+    "B.\nA and B lie on the curve. H is their difference in height, D their distance, and L the "
     "length of cable between them."
 )
 _MARGIN = 1.5  # free margin around a label [pt]
@@ -223,12 +223,12 @@ class Labels:
             self.boxes.append(Bbox([np.subtract(place, half), np.add(place, half)]))
 
     def tick(self, x: float, y: float, angle: float, size: float, colour: str) -> None:
-        """Draw a tick at a point of a curve, to the right of the direction of the curve.
+        """Draw a tick at a point of a curve, to the right when facing along the curve.
 
         Parameters
         ----------
         angle : direction of the curve [rad]
-        size : length of the tick in points; if negative, the tick is drawn to the left of the curve
+        size : length of the tick in points; if negative, the tick is drawn to the left
         """
         place, right = self._place(x, y, angle)
         ends = np.array([place, place + right * size * self._points])
@@ -323,7 +323,10 @@ _ROWS = (
     ("length", "length L", "m", 3),
     ("h0", "H₀ of the chart", "m", 3),
 )
-_NOTE = "A lower end, B upper end; D positive when B is downstream of A; angles to the current."
+_NOTE = (
+    "A is the lower end, B the upper end. D is positive if B is downstream of A. Angles are "
+    "measured from the current."
+)
 
 
 def answer_document(answer: ChartAnswer) -> dict[str, Any]:
@@ -351,8 +354,8 @@ def answer_part(answer: ChartAnswer) -> ReportPart:
         notes.append("Each of these cables fits the input.")
     if any(min(each["phi_a"], each["phi_b"]) < 0.0 for each in figures):
         notes.append(
-            "A negative angle means that the cable dips below that end, or, if buoyant, rises "
-            "above it."
+            "A negative angle at an end means that the cable dips below this end; a buoyant cable "
+            "rises above it."
         )
     return ReportPart(f"Uniform current, K = {answer.k:.6g}", (table, Note(tuple(notes))))
 

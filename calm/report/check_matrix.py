@@ -38,7 +38,7 @@ from calm.report.page_one import (
 )
 
 _OTHER_KIND = ("slack",)
-"""Rules omitted from the matrix, since their utilisation is no share of a strength or a range."""
+"""Rules omitted from the matrix: their utilisation is not a share of a strength or a range."""
 _MOST_ENVIRONMENTS = 12
 _NEAR = 0.9
 
@@ -81,7 +81,7 @@ class SummaryRow:
 
     @property
     def first_failure(self) -> tuple[str, str] | None:
-        """First environment in which the mooring fails, and text of the failure, or None."""
+        """First environment in which the mooring fails, and text of the failure; None if none."""
         cells = {**self.cells, "launch": self.handling} if self.handling else self.cells
         failed = (
             (name, cell.text) for name, cell in cells.items()
@@ -158,8 +158,8 @@ def summary_page(rows: Sequence[SummaryRow]) -> Iterator[Block]:
         number("Water\nm", lambda row: row.depth, share=0.2),
         *(_column(codes[name], name) for name in shown),
         number("Launch", lambda row: _shown(row.handling), share=0.24),
-        aside="of all checks, rounded up. White on black: a check fails. Hatched: over 100 without "
-        "failure. Grey: 90 to 100. ?: unknown",
+        aside="of all checks, rounded up. White on black: a check fails. Hatched: over 100, but "
+        "no check fails. Grey: 90 to 100. ?: unknown",
         note=note,
     )
     yield table_of(
@@ -236,8 +236,8 @@ def mooring_page(signed: SignedMooring) -> Iterator[Block]:
                if one is reported[one.rule][0] else None),
         words("Remedy", lambda one: Cell(detail=without_asides(advice(one))), 1.5),
         aside=(
-            "Each rule is shown by its finding with the highest utilisation, then any more severe "
-            "ones. “Over 100 %” counts the findings in all environments."
+            "Each rule has a row for its finding with the highest utilisation, and a second row if "
+            "another finding is more severe. “Over 100 %” counts the findings in all environments."
         ),
         ruled=False,
     )  # fmt: skip

@@ -103,8 +103,8 @@ def checks_table(signed: SignedMooring, findings: Sequence[Finding]) -> Table:
         note=f"These {len(rows)} rows summarise {len(findings)} findings ({counted}); the files of "
         "this report list them.",
         aside=(
-            "Each rule is shown by its finding with the highest utilisation, then any more severe "
-            "ones. The number of pieces is in brackets."
+            "Each rule has a row for its finding with the highest utilisation, and a second row if "
+            "another finding is more severe. The number of pieces is in brackets."
         ),
     )  # fmt: skip
 
@@ -261,8 +261,8 @@ def _breaks(assessment: Assessment) -> Table:
         note += f"Sections with a larger margin omitted: {left}. "
     if unjudged:
         note += (
-            f"Breaks not judged: {unjudged}. They are within the lowest floats, or between these "
-            "and the release, and would leave the release on the seabed in any design."
+            f"Breaks not judged: {unjudged}. They are among the lowest floats, or between these "
+            "floats and the release. In any design, they would leave the release on the seabed."
         )
     return table_of(
         "Breaks and losses",

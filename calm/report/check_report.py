@@ -40,7 +40,7 @@ def signed_mooring(assessment: Assessment) -> SignedMooring:
 def mooring_section(
     assessment: Assessment, against: Comparison | None = None, page_size: str = "a4"
 ) -> CheckedSection:
-    """Build all pages on one mooring, which takes some tenths of a second.
+    """Build all pages on one mooring, which takes a few tenths of a second.
 
     Parameters
     ----------

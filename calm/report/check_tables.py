@@ -115,8 +115,8 @@ def limits_table(limits: Iterable[LimitKey], title: str = "Limits as used") -> T
         number("value", lambda key: limit_value_text(key, key.value)),
         number("default", lambda key: limit_value_text(key, key.default)),
         words("source of the default", "source", 2.0),
-        note="Limits that differ from their defaults are set in the mooring file, without a "
-        "source.",
+        note="The mooring file sets the limits that differ from their defaults; it gives no "
+        "sources for them.",
     )
 
 

@@ -16,8 +16,8 @@ from calm.report.sheet import leg_titles
 
 _SHARE = f"{LENGTH_ERROR:.1%}".replace("%", " %")
 _SPARES = (
-    "Spares: 10 %, rounded up, at least one (two for shackles, pins and thimbles); a default of "
-    "CALM."
+    "CALM's rule for spares is 10 %, rounded up, and at least one (two for shackles, pins and "
+    "thimbles)."
 )
 _IMPLIED = (
     "Each shackle includes a bolt, nut and cotter pin, unless its name or note says “screw pin”. A "
@@ -32,13 +32,15 @@ def cutting_part(deck: Deck) -> ReportPart:
     """Build the cutting list, with cut lengths, positions of marks, and tolerances."""
     note = (
         "Lengths are unloaded unless a load is stated; marks are measured from the upper end "
-        f"under the same load. Tolerance: {_SHARE} of the length. Change in top depth: effect "
-        f"{'on the leg ' if deck.result.several else ''}if only this piece is {_SHARE} longer, "
-        f"in the {environment_text(deck.environment)}; + is deeper."
+        f"under the same load. Tolerance: {_SHARE} of the length. Change in top depth: how much "
+        f"deeper (+) the top{' of the leg' if deck.result.several else ''} is if only this piece "
+        f"is {_SHARE} longer, in the {environment_text(deck.environment)}."
     )
     cables = [one for one in deck.cuts if not one.is_chain]
     chains = [one for one in deck.cuts if one.is_chain]
-    drum = " Over side, onto drum: sequence numbers; the last piece deployed is spooled first."
+    drum = (
+        " Over side and onto drum are sequence numbers: the last piece deployed is spooled first."
+    )
     tables = [
         *([_cut_table("Wires and ropes", "wire or rope", deck, cables)] if cables else []),
         *([_cut_table("Chains", "chain", deck, chains)] if chains else []),
@@ -203,11 +205,11 @@ def lifts_part(deck: Deck) -> ReportPart:
         labels = named(unknown, len(unknown))
         sentences.append(f"The mass in air, and so the lift in air, is unknown for {labels}.")
     note = (
-        "In air: crane load of the piece with its clamps; cables are paid out instead. Suspended: "
-        "weight in water of all pieces over the side, hanging vertically; in a net, of the leg "
-        "alone. A negative value means that they float. Drag and swell are not included. Shackles, "
-        "links and swivels are lifted with the adjacent pieces; the files list them in separate "
-        "rows."
+        "Lift in air: crane load of the piece with its clamps; cables have no lift in air, because "
+        "they are paid out. Suspended: weight in water of all pieces over the side, hanging "
+        "vertically; in a net, only the pieces of the same leg count. A negative value means that "
+        "the suspended pieces float. Drag and swell are not included. Shackles, links and swivels "
+        "are lifted with the adjacent pieces; the files list them in separate rows."
     )
     return ReportPart("Lifts", (blocks.Prose(tuple(sentences)), _stages(deck), Note((note,))))
 

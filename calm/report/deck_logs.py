@@ -88,7 +88,9 @@ def recovery_part(deck: Deck) -> ReportPart:
             f"surfaces after {first:.0f} min."
         )
         if rise.tangles:
-            sentences.append("The line may double back during the ascent and change the order.")
+            sentences.append(
+                "The line may double back during the ascent; pieces then surface in another order."
+            )
         if rise.in_still_water:
             sentences.append("The ascent is computed in still water.")
     named = zip(("deployed", "position", "water depth"), _deployed(deck), strict=True)
@@ -297,8 +299,9 @@ def _surfacing(deck: Deck) -> list[Table]:
     )
     note = (
         "Surfaces or hangs: time from release to surfacing, or the depth at which the piece hangs "
-        "from the surfaced line. By itself: the piece is buoyant enough to surface alone; other "
-        "pieces are lifted with it. Pieces are listed in order of surfacing, not of hauling. "
+        "from the surfaced line. By itself: the piece is buoyant enough to surface alone; all "
+        "other pieces need the lift of their neighbours. Pieces are listed in order of surfacing, "
+        "not of hauling. "
         "Shackles, links and swivels surface with the pieces they connect."
     )
     tables = [

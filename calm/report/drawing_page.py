@@ -129,8 +129,9 @@ def _buoyancy(force: float) -> str:
 
 _DRAWING_NOTE = (
     "Depths are at the upper end: planned in the mooring file, computed in still water, and "
-    "computed in the load cases. Lengths are as cut; clamps have their position on the piece. The "
-    "largest tension is over all moored cases. Net buoyancy is positive upwards."
+    "computed in the load cases. Lengths are as cut; a clamp has its position on the piece "
+    "instead. The largest tension is the maximum of all moored cases. Net buoyancy is positive "
+    "upwards."
 )
 
 

@@ -33,11 +33,14 @@ SMALLEST_SHARE = 0.005
 """Fraction of a total below which drag forces are summed in one row."""
 
 _SHARES = (
-    "Shares: all drag forces are increased together from zero to their full value, and the "
-    "share of each force is the change that its own increase causes. Drag is the horizontal force "
-    "of the water."
+    "Shares: all drag forces are increased together from zero to their full value. The share of "
+    "a force is the part of the total change that the increase of this force causes. Drag is the "
+    "horizontal force of the water."
 )
-_CHANGES = "Buoyancy is scaled for all buoyant parts and drag for all parts; lengths are unchanged."
+_CHANGES = (
+    "A change of buoyancy applies to all buoyant parts, and a change of drag to all parts; "
+    "lengths are unchanged."
+)
 
 
 def line_facts(result: Result) -> tuple[tuple[str, str], ...]:
@@ -213,7 +216,7 @@ def sizing_part(sizing: Sizing) -> ReportPart:
     old = sizing.before.result.warnings if sizing.before.result is not None else ()
     new = sizing.after.result.warnings if sizing.after.result is not None else ()
     lines += [(Span(f"! {text}", State.FAIL),) for text in new if text not in old]
-    effort = f"Found after {sizing.solves} solves with the settings of the file."
+    effort = f"Solved {sizing.solves} times with the solver settings of the file."
     effort = "Solved once." if sizing.solves == 1 else effort
     lines += [*sizing.notes, (Span(effort, quiet=True),)]
     table = _comparison(sizing, sizing.before, sizing.after)

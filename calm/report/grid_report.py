@@ -89,13 +89,14 @@ def scales_table(fields: Mapping[str, GriddedQuantity]) -> Table:
 def methods_text(fields: Mapping[str, GriddedQuantity], levels: Floats) -> tuple[str, ...]:
     """Return sentences for the methods section of a cruise report."""
     return (
-        f"{', '.join(fields)} at the estimated depths of the instruments were mapped to "
-        f"{len(levels)} levels between {levels[0]:g} and {levels[-1]:g} m by a Gaussian process "
-        f"over depth and time about the mean profile of the record (CALM {__version__}).",
+        f"The values of {', '.join(fields)} at the estimated depths of the instruments were "
+        f"interpolated to {len(levels)} levels between {levels[0]:g} and {levels[-1]:g} m with a "
+        "Gaussian process in depth and time, which describes the deviations from the mean profile "
+        f"of the record (CALM {__version__}).",
         *(
-            f"{name}: {_used(field)} instruments; correlated over {field.scales.depth:.3g} m "
-            f"along depth and {_hours(field)} h in time; {100.0 * field.scales.share:.2g} % "
-            "of the variance taken as uncorrelated."
+            f"{name}: {_used(field)} instruments; correlation scales of "
+            f"{field.scales.depth:.3g} m in depth and {_hours(field)} h in time; "
+            f"{100.0 * field.scales.share:.2g} % of the variance was treated as uncorrelated."
             for name, field in fields.items()
         ),
         "Standard deviations include the error of the sensors, the error of their depths "

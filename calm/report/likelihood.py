@@ -11,13 +11,16 @@ from calm.report.open_items import limit_text
 
 _NOTE = (
     "Each rule is shown for the component that exceeds its limit most often. The rules about "
-    "launch, ascent and breaks use the first 64 samples only. A sample without equilibrium exceeds "
-    "every limit."
+    "launch, ascent and breaks use the first 64 samples only. A sample without equilibrium counts "
+    "as exceeding every limit."
 )
 
 
 def likelihood_tables(named: Iterable[tuple[str, Sequence[Finding]]]) -> Iterator[blocks.Table]:
-    """Yield the table of the probabilities of each design, if any; the most critical is first."""
+    """Yield a table of the probabilities of exceeding limits, with the most critical design first.
+
+    No table is yielded if no design has any probability.
+    """
     designs = [(_likeliest(findings), name) for name, findings in named]
     designs.sort(key=lambda one: -(one[0][0].probability or 0.0) if one[0] else inf)
     if not any(found for found, _ in designs):

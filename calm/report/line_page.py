@@ -107,11 +107,11 @@ def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
         number(f"Rise {unit}", lambda group: _force(
             max((one.rise_tension or 0.0 for one in group), default=None))),
         note=(
-            "Capacity is the smaller of the working load and the breaking load over its safety "
-            "factor; the launch columns use the factors for the launch. – not judged, ? no "
-            "published load, ≈ estimated, ○ accepted. The code of the load case follows the "
+            "Capacity is the working load, or the breaking load divided by its safety factor if "
+            "this is smaller; the launch columns use the factors for the launch. – not judged, ? "
+            "no published load, ≈ estimated, ○ accepted. The code of the load case follows the "
             "tension. Equal pieces share a row: tension, capacity and use are those of the piece "
-            "with the highest use; minimum, tilt and rise cover all of them."
+            "with the highest use; minimum, tilt and rise are the extremes of all these pieces."
         ),
         aside="envelope of all load cases: largest tension and tilt, minimum tension",
         ruled=False,
@@ -199,7 +199,7 @@ def _hardware_table(loads: Sequence[PieceEnvelope]) -> Table:
 def _anchor_table(signed: SignedMooring) -> Iterator[Table]:
     """Yield the table of anchor loads, with a row for each load case.
 
-    If there are several anchors or many cases, it has only the most severe case of each anchor.
+    If there are several anchors or many cases, only the most severe case of each anchor is listed.
     """
     rows = [
         (case, result) for case in signed.standing for result in case.results if result.leg.anchored
@@ -240,8 +240,9 @@ def _anchor_table(signed: SignedMooring) -> Iterator[Table]:
             row[1].anchor_load.required_weight / row[1].anchor_load.weight)),
         number("Uplift use %", uplift),
         number("Sliding use %", sliding),
-        note=f"Required: {factor:g} (V + H / {first.anchor_load.friction:.3g}). Uplift: V against "
-        f"weight / {factor:g}. Sliding: H against {first.anchor_load.friction:.3g} "
-        f"(weight / {factor:g} − V). Soil strength is not checked.",
+        note=f"Weight required: {factor:g} (V + H / {first.anchor_load.friction:.3g}). Uplift use "
+        f"compares V with weight / {factor:g}; sliding use compares H with "
+        f"{first.anchor_load.friction:.3g} (weight / {factor:g} − V). Soil strength is not "
+        "checked.",
         ruled=False,
     )  # fmt: skip

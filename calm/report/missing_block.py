@@ -133,13 +133,13 @@ def _how_to_use(ids: Iterable[str], places: Places) -> list[str]:
     """Return instructions for components defined in the file, and for components of a catalogue."""
     defined = {id in places for id in ids}
     below = " and ".join(places.get("", ()))
-    advice = ["Copy the keys of a component that the file defines into that definition."] * (
+    advice = ["If the file defines a component, copy the keys below into its definition."] * (
         True in defined
     )
     if False in defined:
         advice.append(
-            f"Copy {'the other' if True in defined else 'these'} entries to below `components:`, "
-            f"{below}."
+            f"Copy {'the other' if True in defined else 'these'} entries into the section "
+            f"`components:`, {below}."
             if below
             else "Add this section to the mooring file. It completes components of the catalogue."
         )

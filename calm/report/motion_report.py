@@ -103,7 +103,7 @@ def methods_text(study: MotionEstimate, series: Sequence[SensorSeries]) -> tuple
     down = down[np.isfinite(down)]
     wide = np.concatenate([one.spread[np.isfinite(one.spread)] for one in series])
     factors = "; ".join(
-        f"{TITLES[key]} {value:.2f} times that assumed (95 %: {low:.2f} to {high:.2f})"
+        f"{TITLES[key]} {value:.2f} times the assumed value (95 %: {low:.2f} to {high:.2f})"
         for key, (value, low, high) in study.factors.items()
     )
     sentences = [
@@ -210,7 +210,7 @@ def diagnosis_document(diagnosis: Sequence[Fault]) -> list[dict[str, Any]]:
 def factors_table(factors: Mapping[str, tuple[float, float, float]], datum: float) -> Table:
     """Tabulate the common factors with their 95 % intervals."""
     rows = [
-        (TITLES[name] + (": not a plausible drag, see below" if no_drag(name, value) else ""),
+        (TITLES[name] + (": implausible, see below" if no_drag(name, value) else ""),
          f"{value:.3f}", f"{low:.3f}–{high:.3f}")
         for name, (value, low, high) in factors.items()
     ]  # fmt: skip

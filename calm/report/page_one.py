@@ -219,7 +219,7 @@ def _figures() -> tuple[_Figure, ...]:
 
 
 def case_columns(cases: Sequence[LoadCase]) -> list[blocks.Field]:
-    """Return the columns for which at least one load case has a value; no cell is bold."""
+    """Return the columns for which at least one load case has a value, without bold cells."""
     known = [one for one in _figures() if any(one.value(case) for case in cases)]
     return [figure.field(nan) for figure in known]
 
@@ -229,7 +229,7 @@ def shown_cases(cases: Sequence[LoadCase]) -> tuple[list[LoadCase], str]:
     cases, note = [*cases], ""
     if len(cases) > MOST_CASES:
         cases = worst_of_each_environment(cases)
-        note = "The table has the case with the largest knockdown of each environment."
+        note = "For each environment, the table shows the case with the largest knockdown."
     if len(cases) > MOST_CASES:
         kept = sorted(cases, key=lambda one: -one.knockdown)[:MOST_CASES]
         note += f" Less severe cases omitted: {len(cases) - MOST_CASES}."
@@ -309,8 +309,8 @@ def governing_table(signed: SignedMooring) -> Table:
         *check_fields(MOST_LABELS),
         note=note,
         ruled=False,
-        aside="Use is the utilisation, demand / capacity or required / available, rounded up. "
-        "The bars have a line at 100 % and are hatched above it.",
+        aside="Use is the utilisation (demand / capacity or required / available), rounded up. "
+        "The bars have a line at 100 % and are hatched beyond it.",
     )
 
 
@@ -456,7 +456,7 @@ def drawn_parts(
 
 
 def item_tags(signed: SignedMooring) -> dict[tuple[str, str | None], str]:
-    """Return the mark and number of the first open item on each pair of rule and component."""
+    """Return the mark and number of the first open item for each pair of rule and component."""
     tags: dict[tuple[str, str | None], str] = {}
     for item, group in zip(signed.items, open_groups(signed.assessment), strict=True):
         for one in group:

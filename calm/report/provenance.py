@@ -124,8 +124,9 @@ UNSEEN = (
     "Not covered by a static calculation: waves and the tensions they cause; snap loads; fatigue "
     "due to waves and vortices; creep, corrosion and wear; transients at the end of the anchor "
     "launch; hauling and lifting during recovery.",
-    "No margin in this report includes these effects. In harsh weather they determine the life of "
-    "a surface mooring, and a safety factor on static tension does not replace their analysis.",
+    "No margin in this report includes these effects. In harsh weather, these effects determine "
+    "the life of a surface mooring. A safety factor on static tension does not replace their "
+    "analysis.",
     f"Also excluded: {'; '.join(_ALSO_EXCLUDED)}.",
 )
 """Statements on excluded effects that every report contains."""
@@ -147,7 +148,7 @@ _MOST_LEVELS = 40
 
 
 def environments_table(waters: Iterable[tuple[str, Water]]) -> blocks.Table:
-    """Tabulate depth, density, and maximum current and its depth, for each environment."""
+    """Tabulate water depth, density, and maximum current with its depth, for each environment."""
     rows = []
     for name, water in waters:
         speed = np.hypot(water.u, water.v)
@@ -170,7 +171,7 @@ def environments_table(waters: Iterable[tuple[str, Water]]) -> blocks.Table:
 
 
 def current_listing(name: str, water: Water) -> Listing:
-    """List the current used in the computation, at up to `_MOST_LEVELS` evenly chosen levels."""
+    """List the current used in the computation, at no more than `_MOST_LEVELS` of its levels."""
     count = len(water.level)
     chosen = np.unique(np.linspace(0, count - 1, min(count, _MOST_LEVELS)).round().astype(int))
     lines = [f"{'depth m':>10} {'speed m/s':>10} {'toward °':>10} {'upward m/s':>11}"]

@@ -144,8 +144,8 @@ UNITS = {"length": "m", "force": "N", "angle": "deg", "mass": "kg", "speed": "m/
 def to_json(documents: list[dict[str, Any]]) -> str:
     """Create JSON text: an object for one document, or an array for several documents.
 
-    Units are added to a document with a key `calm`, which is a result. Numbers that are not finite
-    become null. The text is plain ASCII, so that no terminal or pipe can corrupt it.
+    Units are added to results, which are the documents with a key `calm`. Numbers that are not
+    finite become null. The text is plain ASCII, so that no terminal or pipe can corrupt it.
     """
     with_units = [{**each, "units": UNITS} if "calm" in each else each for each in documents]
     content = with_units[0] if len(with_units) == 1 else with_units

@@ -162,7 +162,10 @@ def _pieces(uncertain: Uncertain) -> Table:
 
 def _contributions(uncertain: Uncertain) -> Table:
     cause, unexplained = uncertain.contributions[0].quantity, uncertain.unexplained
-    note = f"No single input explains {unexplained:.0%} of the spread: the response is not linear."
+    note = (
+        f"{unexplained:.0%} of the spread cannot be attributed to inputs: the response is not "
+        "linear."
+    )
 
     def share(heading: str, name: str) -> Field:
         def text(one: Any) -> str:

@@ -21,12 +21,12 @@ _NOTE = (
     "standard deviations. ! marks a piece that goes slack."
 )
 _SEAS = (
-    "Measured: range of the standard deviation that tensions measured at sea imply. Half, twice: "
-    "standard deviation with half and with twice the cut-off frequency."
+    "Measured: range of the standard deviation to be expected from measurements at sea. Half, "
+    "twice: standard deviation with half and with twice the cut-off frequency."
 )
 _CUT_OFFS = (
-    "The table gives the tension at the top if the waves are cut off at another frequency, with "
-    "the same drag. Most changed: the piece whose standard deviation changes most."
+    "The table gives the tension at the top for other cut-off frequencies of the waves; the drag "
+    "is unchanged. Most changed: the piece whose standard deviation changes most."
 )
 _LIFE = (
     "Life: years until the damage sum reaches 1 in these seas. Low, high: life with standard "
@@ -224,9 +224,9 @@ def _statements(analysis: WaveAnalysis, state: MooringInSea) -> list[blocks.Line
         statements.append(_measured(state, state.band))
     one = analysis.accuracy
     good = (
-        f"Standard deviations change by {one.mesh:.1%} with twice the elements, by "
-        f"{one.frequencies:.1%} with twice the frequencies, by {one.linearisation:.0%} with a "
-        "fifth less drag."
+        f"Standard deviations change by {one.mesh:.1%} if the number of elements is doubled, by "
+        f"{one.frequencies:.1%} if the number of frequencies is doubled, and by "
+        f"{one.linearisation:.0%} if the drag is reduced by a fifth."
     ).replace("%", " %")
     return [*statements, (blocks.Span(good, quiet=True),)]
 
@@ -242,9 +242,10 @@ def _measured(state: MooringInSea, band: MeasuredBand) -> str:
         else (" The height of this sea is outside that range of Hs.")
     )
     return (
-        f"Measured at sea: in seas of Hs {band.from_height:g} to {band.to_height:g} m the standard "
-        "deviation of the tension below five buoys of the Southern Ocean Flux Station was "
-        f"{band.low:.2f} to {band.high:.2f} times the computed one. For this mooring that means "
+        f"Measured at sea: in seas of Hs {band.from_height:g} to {band.to_height:g} m, the "
+        "measured standard deviation of the tension below five buoys of the Southern Ocean Flux "
+        f"Station was {band.low:.2f} to {band.high:.2f} times the computed standard deviation. For "
+        "this mooring, these factors give a standard deviation of "
         f"{say('tension', low.tension_std)} to {say('tension', high.tension_std)} at the top, with "
         f"a maximum of {say('tension', low.tension_max)} to "
         f"{say('tension', high.tension_max)}.{outside} "

@@ -99,7 +99,7 @@ def quality_of(result: LegResult) -> Prose:
 
 
 def accuracy_text(results: Sequence[LegResult]) -> str:
-    """Describe the numerical error of several results, and the larger error due to their inputs."""
+    """Describe the numerical error of several results, and the larger uncertainty of the inputs."""
     depth = max(one.accuracy.depth for one in results)
     share = max(
         100.0 * one.accuracy.tension / max(float(one.components.tension.max()), 1.0)
@@ -108,7 +108,7 @@ def accuracy_text(results: Sequence[LegResult]) -> str:
     return (
         f"The numerical error of the solution is below {math.ceil(10.0 * depth) / 10.0:.1f} m in "
         f"depth and {max(math.ceil(10.0 * share) / 10.0, 0.1):.1f} % of the tension. Inputs are "
-        "less certain: the current to about 10 %, the drag of a cable to about 20 %."
+        "less certain: the current is known to about 10 %, the drag of a cable to about 20 %."
     )
 
 
@@ -402,7 +402,7 @@ def _convergence(result: Result) -> str:
     return (
         f"{result.status.capitalize()} after {result.iterations} integrations of the legs over "
         f"{result.segments} segments. Numerical error: {accuracy.depth:.2g} m in depth, "
-        f"{accuracy.tension:.2g} N in tension; {result.miss:.1g} m in the position of the ends, "
-        f"{left:.1g} N in the balance of the nodes; relative imbalance of forces "
-        f"{result.closure:.1g}."
+        f"{accuracy.tension:.2g} N in tension. Remaining error: {result.miss:.1g} m in the "
+        f"position of the ends, {left:.1g} N in the balance of the nodes, {result.closure:.1g} in "
+        "the relative balance of forces."
     )

@@ -30,7 +30,8 @@ FIGURES = ("depth", "layback", "tension", "angle", "body_tension", "frequency")
 
 _HEADINGS = {"body_tension": "tension\nat body"}
 _NOTE = (
-    "Depth and layback refer to the body, tension and angle from the horizontal to the tow point."
+    "Depth and layback are those of the body; tension and angle from the horizontal are those at "
+    "the tow point."
 )
 _DIGITS = 4
 _WARNED = "! marks warnings, which --json reports."

@@ -89,7 +89,9 @@ def shape_picture(dataset: xr.Dataset, time: str | np.datetime64) -> LinePicture
     names = ("depth_top", "x_top", "y_top")
     depth, x, y = (np.asarray(row[name].values, np.float64) for name in names)
     if np.isnan(depth).any():
-        raise UsageError(f"the profile of {when(row['time'].values)} has no equilibrium to draw")
+        raise UsageError(
+            f"the profile of {when(row['time'].values)} cannot be drawn: it has no equilibrium"
+        )
     distance = float(np.hypot(x[0], y[0]))
     plane = np.array([x[0], y[0]]) / distance if distance > 0.0 else np.array([1.0, 0.0])
     height = float(np.ptp(depth))

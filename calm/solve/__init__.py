@@ -7,6 +7,7 @@ from calm.solve.free import looped as looped
 from calm.solve.free import part_of as part_of
 from calm.solve.free import solve_rise as solve_rise
 from calm.solve.free_search import plumb_speed as plumb_speed
+from calm.solve.loading import load_line_solver as load_line_solver
 from calm.solve.mooring import solve_mooring as solve_mooring
 from calm.solve.solution import Settings as Settings
 from calm.solve.solution import Solution as Solution

@@ -1,8 +1,8 @@
 """Error estimates from shapes on coarse and on halved segments, and Richardson extrapolation.
 
 The march is of second order, so one third of the change from the coarse to the fine shape is the
-error of the fine shape. Richardson extrapolation adds this third to the fine shape. Nodes that only
-the fine shape has get the change of their neighbours.
+error of the fine shape. Richardson extrapolation adds this third to the fine shape. Nodes that
+exist only in the fine shape are changed like their neighbours.
 
 The method requires segments without jumps or kinks. The march therefore splits segments at levels
 of the current profile and wherever a drag law switches.
@@ -45,7 +45,6 @@ class Extent(NamedTuple):
 UNKNOWN_ERRORS = Errors(0.0, 0.0, 0.0, 0.0, 0.0)
 
 
-@within
 def tension_at(record: Record, node: int) -> float:
     """Return the tension at a node [N]."""
     fx, fy, fz = record[3][node], record[4][node], record[5][node]

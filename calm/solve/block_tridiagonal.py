@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 Numbers = NDArray[Any]
 
-CHUNK = 3
+CHUNK = 4
 """Number of blocks eliminated together; the block after them stays in the reduced system."""
-DENSE = 16
+DENSE = 20
 """Largest number of blocks of a system that is solved as a single dense matrix."""
 
 
@@ -80,9 +80,10 @@ def _solved(diagonal: Numbers, upper: Numbers, lower: Numbers, right: Numbers) -
 class _Layout(NamedTuple):
     """Places of a system in an array with a matrix for each chunk.
 
-    The rows of a matrix are those of the blocks of a chunk, the last of which stays in the reduced
-    system. Its columns are those of the other blocks, of the last block of the chunk above, of its
-    own last block, of the right-hand sides, and of the block below.
+    Each matrix has the rows of the blocks of one chunk. The last block of a chunk stays in the
+    reduced system. The columns of a matrix belong, in this order, to the other blocks of the chunk,
+    the last block of the chunk above, the last block of this chunk, the right-hand sides, and the
+    block below.
 
     Attributes
     ----------

@@ -47,7 +47,7 @@ class Link(NamedTuple):
 
     The link holds the inverse of N = A + s, w = N⁻¹ t, q = A w and g = c / (1 + c t·w). Then (A +
     K)⁻¹ is N⁻¹ - g w wᵀ, K (A + K)⁻¹ is s N⁻¹ + g q wᵀ, and K (A + K)⁻¹ A is s N⁻¹ A + g q qᵀ.
-    These forms never subtract large numbers, however stiff the spring is.
+    No large numbers are subtracted in these expressions, however stiff the spring is.
     """
 
     inverse: Symmetric

@@ -36,7 +36,6 @@ from calm.solve.problem import (
     OTHER,
     About,
     LineProblem,
-    Search,
     Unknown,
     reach_of,
 )
@@ -235,27 +234,27 @@ def changed(
     )  # fmt: skip
 
 
-def coarse_about(search: Search, unknown: Unknown) -> About:
+def coarse_about(problem: LineProblem, unknown: Unknown) -> About:
     """Return the settings for marches with the coarse angle step, used to bracket a root."""
-    step = search.problem.limits.coarse_step
-    return About(search.problem, unknown, step, CHOSEN, False, NOT_RECORDED)
+    step = problem.limits.coarse_step
+    return About(problem, unknown, step, CHOSEN, False, NOT_RECORDED)
 
 
-def coarse_miss(search: Search, unknown: Unknown, x: float) -> float:
+def coarse_miss(problem: LineProblem, unknown: Unknown, x: float) -> float:
     """Return the miss [m] of a march with the coarse angle step."""
-    return search.miss(coarse_about(search, unknown), x)
+    return miss_at(coarse_about(problem, unknown), x)
 
 
 def coarse_root(
-    search: Search, unknown: Unknown, a: float, miss_a: float, b: float, miss_b: float
+    problem: LineProblem, unknown: Unknown, a: float, miss_a: float, b: float, miss_b: float
 ) -> Root:
     """Find a root of the coarse miss between a and b, to within about 1e-4 of the span."""
-    span = search.problem.limits.span
+    span = problem.limits.span
     small, linear = 1e-4 * span, unknown.sought == BELOW
     if linear:  # below the surface the miss is almost linear, so the last step needs no march
         small = max(small, 0.2 * max(abs(miss_a), abs(miss_b)))
     x, miss, slope = bracketed_root(
-        search.miss, coarse_about(search, unknown), a, miss_a, b, miss_b,
+        miss_at, coarse_about(problem, unknown), a, miss_a, b, miss_b,
         min(small, NEARLY_LINEAR * span), COARSEST_BRACKET * abs(b - a),
     )  # fmt: skip
     if linear and slope != 0.0:
@@ -263,17 +262,17 @@ def coarse_root(
     return Root(True, unknown, x, miss, slope)
 
 
-def planned(search: Search, root: Root, step: float) -> Root:
-    """Choose the segments at an angle step, and find the root of the miss near a coarse root.
+def planned(problem: LineProblem, root: Root, step: float) -> Root:
+    """Choose the segments for an angle step, and find the root of the miss near a coarse root.
 
-    If the march chooses its segments freely, the miss is not quite continuous, so this root is
-    approximate. With the last segments held fixed, the miss is continuous. The result is the root
-    of this continuous miss, estimated by one secant step; the caller marches at this root.
+    If the march chooses its segments freely, the miss is not quite continuous, so its root is
+    approximate. If the segments of the last march are kept, the miss is continuous. The result is
+    the root of this continuous miss, estimated by one secant step; the caller marches at this root.
     """
-    limits = search.problem.limits
+    limits = problem.limits
     small, record = (ABOUT, OTHER) if limits.near > 0.0 else (WELL_KNOWN, NOT_RECORDED)
     small *= limits.span
-    found = near_root(search, root, step, CHOSEN, False, record, small, COARSEST_BRACKET)
+    found = near_root(problem, root, step, CHOSEN, False, record, small, COARSEST_BRACKET)
     if not found.found and not isnan(found.miss):
         return root
     x = found.x
@@ -290,27 +289,27 @@ def segments_of(problem: LineProblem, cuts: int) -> int:
     return 2 * chosen if cuts == HALVED else chosen
 
 
-def polish(search: Search, root: Root, cuts: int, record: int) -> Closed:
+def polish(problem: LineProblem, root: Root, cuts: int, record: int) -> Closed:
     """Close the line on fixed segments, starting from a root found on other segments.
 
     If the unknown belongs to a lower float, the floats above it are first placed at the surface.
     """
-    unknown, shares = root.unknown, search.problem.work.shares
+    unknown, shares = root.unknown, problem.work.shares
     if isnan(root.miss):
-        return not_closed(MARCH_STOPPED, search.problem.work.left[FAILURE], root)
+        return not_closed(MARCH_STOPPED, problem.work.left[FAILURE], root)
     for k in range(unknown.sought):
-        part = down_to(search.problem, with_sought(unknown, k, False), k + 1)
+        part = down_to(problem, with_sought(unknown, k, False), k + 1)
         near = Root(True, part, shares[0][k], 0.0, shares[1][k])
-        closed = close_near(search, near, cuts, record)
+        closed = close_near(problem, near, cuts, record)
         if closed.ending != FOUND:
             return closed
         shares[0][k], shares[1][k] = closed.root.x, closed.root.slope
-    return close_near(search, root, cuts, record)
+    return close_near(problem, root, cuts, record)
 
 
-def close_near(search: Search, root: Root, cuts: int, record: int) -> Closed:
+def close_near(problem: LineProblem, root: Root, cuts: int, record: int) -> Closed:
     """Close a line, or a part of a line, on fixed segments near a known root."""
-    problem, limits = search.problem, search.problem.limits
+    limits = problem.limits
     small = 0.1 * limits.allowed
     if limits.near > 0.0:
         small = (4.0 if cuts == CHOSEN else 0.5) * limits.allowed
@@ -318,7 +317,9 @@ def close_near(search: Search, root: Root, cuts: int, record: int) -> Closed:
         small = min(small, limits.share_allowed * abs(root.slope))
     if limits.near > 0.0 and root.unknown.stages < len(problem.course.stages):
         small *= OF_A_PART
-    found = near_root(search, root, limits.angle_step, cuts, True, record, small, NARROWEST_BRACKET)
+    found = near_root(
+        problem, root, limits.angle_step, cuts, True, record, small, NARROWEST_BRACKET
+    )
     left = problem.work.left
     if isnan(found.miss):
         return not_closed(MARCH_STOPPED, left[FAILURE], found)
@@ -340,7 +341,7 @@ def not_closed(ending: int, value: float, root: Root) -> Closed:
 
 
 def near_root(
-    search: Search,
+    problem: LineProblem,
     root: Root,
     step: float,
     cuts: int,
@@ -361,18 +362,15 @@ def near_root(
     small : miss at which the search ends [m]
     narrow : bracket width at which the search ends, as a fraction of the whole range
     """
-    problem = search.problem
     unknown, x, slope = root.unknown, root.x, root.slope
     miss = 0.0
     for side in range(2):
         about = About(problem, unknown, step, cuts, given, record)
         high = problem.limits.span if unknown.sought == BELOW else 1.0
-        found, x, miss, slope = root_near(
-            search.miss, about, x, slope, 0.0, high, small, narrow * high
-        )
+        found, x, miss, slope = root_near(miss_at, about, x, slope, 0.0, high, small, narrow * high)
         if found:
             if x != problem.work.left[LAST] and not isnan(miss):
-                miss = search.miss(about, x)
+                miss = miss_at(about, x)
             return Root(True, unknown, x, miss, slope)
         whole = unknown.stages == len(problem.course.stages)
         across = whole and unknown.sought <= 0 and len(problem.surfacing) > 0

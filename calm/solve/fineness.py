@@ -1,9 +1,9 @@
 """Choice of the number of segments, by comparing the shape on coarse and on halved segments.
 
-The segments are chosen at twice the angle step, and the line or net is closed on them. Then every
+The segments are chosen for twice the angle step, and the line or net is closed on them. Then every
 segment is halved, and the line or net is closed again. A third of the change is the error of the
-fine shape (`calm.solve.accuracy`). If this error is too large, both steps are repeated at a smaller
-angle step.
+fine shape (`calm.solve.accuracy`). If this error is too large, both steps are repeated with a
+smaller angle step.
 """
 
 from math import degrees, sqrt

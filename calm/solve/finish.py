@@ -189,7 +189,7 @@ def closing_refusal(closed: Closed) -> NoEquilibrium:
         )
     if closed.ending == solution.SLACK_ON_DIGITS:
         return Status.SLACK.because(
-            "The line is slack: its shape depends on the last digits of the buoyancy in use."
+            "The line is slack: rounding of the buoyancy in use changes its shape."
         )
     return Status.NOT_CONVERGED.because(
         f"The computed end of the line is {closed.value:.3g} m from the anchor."
@@ -225,17 +225,19 @@ def refusal_of(found: FoundShape, line: Line, water: Water) -> NoEquilibrium:
         )
     if ending == solution.TOO_MANY_AFLOAT:
         return Status.ABOVE_SURFACE.because(
-            f"More than {MOST_AFLOAT} floats would lie at the surface, one after the other."
+            f"More than {MOST_AFLOAT} consecutive floats would lie at the surface."
         )
     if ending == solution.RISES:
         return Status.ABOVE_SURFACE.because(
-            "Buoyant parts of the line, other than the consecutive floats at its top, would "
-            "rise above the surface."
+            "Buoyant parts of the line below the consecutive floats at its top would rise above "
+            "the surface."
         )
     if ending == solution.DRAGGED_DOWN:
         return Status.GROUNDED.because("The current drags the whole line down to the seabed.")
     if ending == solution.NOT_LYING:
-        return Status.GROUNDED.because("The line does not lie on the seabed.")
+        return Status.GROUNDED.because(
+            "The approximate shape has a part on the seabed, but the exact shape does not."
+        )
     if ending == solution.BELOW_SEABED:
         return touching(piece, value, _longer_than_deep(line, water))
     if ending == solution.ABOVE_SURFACE:

@@ -1,6 +1,6 @@
-"""Fit of the length of a piece to a wanted depth.
+"""Fit of the length of a piece to a required depth.
 
-This is the top depth of a mooring in still water, or the depth of a towed body.
+The depth is the top depth of a mooring in still water, or the depth of a towed body.
 """
 
 from dataclasses import replace
@@ -45,14 +45,14 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
         ``slack`` if the line would fold.
     """
     still_water = water.still()
-    refuse_unsupported(line, still_water, standing_lift(line, still_water))
+    refuse_unsupported(line, still_water)
     upright = _upright_length(line, still_water, piece, top_depth, settings)
     shortest = float(line.clamp_at[line.clamp_piece == piece].max(initial=0.0))
     # long segments are exact for a plumb line
     coarse = replace(settings, angle_step=max(settings.angle_step, COARSE_STEP))
 
     def excess(_: None, length: float) -> float:
-        """Return the depth of the free end, minus the wanted depth [m]."""
+        """Return the depth of the free end, minus the required depth [m]."""
         try:
             solution = solve_mooring(line.with_length(piece, length), still_water, coarse)
         except NoEquilibrium as refusal:
@@ -76,10 +76,11 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
     lift = standing_lift(line, water)
     if float(lift[:piece].sum()) <= 0.0:
         raise too_heavy(lift)
-    clamped = f" and its own {shortest:.2f} m down to the lowest clamp" if shortest else ""
+    clamped = f", and {{piece}} is at least {shortest:.2f} m long down to its lowest clamp"
     raise Status.NO_EQUILIBRIUM.because(
-        f"No length of {{piece}} puts the top of the line at {top_depth:g} m: the other pieces, "
-        f"{others:.2f} m unstretched{clamped}, are longer than the {room:.2f} m available."
+        f"No length of {{piece}} puts the top of the line at {top_depth:g} m. Only {room:.2f} m is "
+        f"available, but the other pieces are {others:.2f} m long (unstretched)"
+        f"{clamped if shortest else ''}."
         + (doubted_depth(water.depth) if others > 2.0 * room else ""),
         piece,
     )
@@ -88,7 +89,7 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
 def _upright_length(
     line: Line, water: Water, piece: int, top_depth: float, settings: Settings
 ) -> float | None:
-    """Return the length [m] of a piece that gives an upright line the wanted top depth, or None."""
+    """Return the length [m] of a piece that gives an upright line the top depth, or None."""
     still, goal = Profile(water), line.anchor_height - water.depth
     room = water.depth - line.anchor_height - top_depth
 
@@ -165,7 +166,7 @@ def fit_tow_length(
         out, lack = (shortest, short) if short < 0.0 else (longest, lacking(None, longest))
         raise Status.NO_EQUILIBRIUM.because(
             f"No length of {{piece}} brings its lower end to {depth:g} m at this speed: "
-            f"with {out:g} m out it is at {depth - lack:.2f} m.",
+            f"with {out:g} m paid out, the lower end is at {depth - lack:.2f} m.",
             piece,
             "Choose another depth or speed, or change the weight of the cable or towed body.",
         )

@@ -39,7 +39,7 @@ class FreeMotion:
     velocity : (3,) velocity over the ground: east, north, up [m/s]
     solution : shape and forces in the flow relative to the line, with x and y relative to the lower
         end; the error estimates are NaN and the number of marches is 0
-    tangles : indices of pieces that have overtaken, wholly or in part, the line above them
+    tangles : indices of the pieces that have wholly or partly overtaken the line above them
     """
 
     velocity: Floats
@@ -122,7 +122,7 @@ def _recorded(rising: Rising, place: FreePlace, cuts: Cuts, settings: Settings) 
 
 
 def _tangles(solution: Solution) -> tuple[int, ...]:
-    """Find the pieces that form loops: pieces partly upside down, and short ones in compression."""
+    """Find looped pieces: pieces partly upside down, and short pieces in compression."""
     line, piece = solution.line, solution.element_piece
     first, last = solution.piece_nodes.T
     pushed = (solution.force[first] + solution.force[last])[:, 2] < 0.0

@@ -45,7 +45,7 @@ def terminal(rising: Rising, angle_step: float) -> tuple[FreePlace, Cuts]:
 
     Parameters
     ----------
-    angle_step : angle step of a segment [rad]
+    angle_step : largest rotation of a segment [rad]
 
     Raises
     ------

@@ -191,7 +191,7 @@ def bracketed_root(
     small: float,
     narrow: float,
 ) -> tuple[float, float, float]:
-    """Find the root of a continuous function between a and b, where it has opposite signs.
+    """Find the root of a continuous function that has opposite signs at a and b.
 
     Chandrupatla's method takes an inverse quadratic step if the last three points lie on a suitable
     curve, and otherwise bisects the bracket. The first step is a secant step.
@@ -202,7 +202,7 @@ def bracketed_root(
         search
     a, fa, b, fb : two numbers and the values of the function there
     small : the search stops when |function| is at most this value
-    narrow : the search stops when the bracket is at most this wide
+    narrow : the search stops when the width of the bracket is at most this value
 
     Returns
     -------

@@ -72,7 +72,7 @@ DEPTH_ERROR, TENSION_ERROR = range(2)
 def newton_step(net: NetProblem, found: Sequence[float]) -> float:
     """Solve the linear equations of a Newton step, and return the size of the step.
 
-    The step is written to `net.update`, in units of the scales of the unknowns. The method is
+    The step is written to `net.update`, divided by the scale of each unknown. The method is
     Gaussian elimination with partial pivoting; an unknown without a pivot keeps its value.
     """
     size, matrix, row = len(found), net.matrix, 0
@@ -256,7 +256,7 @@ def record_shapes(net: NetProblem, x: Sequence[float], how: Marching) -> None:
 def close_coarsely(
     net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float
 ) -> int:
-    """Choose segments at twice an angle step [rad], and close the net on these segments."""
+    """Choose segments for twice the given angle step, and close the net on these segments."""
     choosing = Marching(sea, 2.0 * step, CHOSEN, False, False, COARSE, 0.0)
     failure = write_residual(net, x, choosing, False)
     if failure != GOES_ON:
@@ -287,7 +287,7 @@ def settle(net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, en
 def close_both(
     net: NetProblem, sea: Sea, x: MutableSequence[float], step: float, enough: float
 ) -> int:
-    """Close a net on segments chosen at twice an angle step, and then on halved segments."""
+    """Close a net on segments for twice the given angle step, and then on the halved segments."""
     ending = close_coarsely(net, sea, x, step, enough)
     if ending != FOUND:
         return ending
@@ -349,7 +349,7 @@ class NetTask(NamedTuple):
     Attributes
     ----------
     task : MARCH marches the net; SLOPES also computes the Jacobian; CLOSE calls `close_net`; SETTLE
-        calls `settle`; DRIFTS calls `drifts` for the net as settled last
+        calls `settle`; DRIFTS calls `drifts` for the last settled net
     x : the unknowns, which CLOSE and SETTLE overwrite with the solution
     enough, known : as in `close_net`
     """
@@ -365,19 +365,19 @@ class NetTask(NamedTuple):
 MARCH, SLOPES, CLOSE, SETTLE, DRIFTS = range(5)
 
 
-def do_task(job: NetTask, _: float) -> float:
+def do_task(job: NetTask) -> int:
     """Perform a task and return its outcome.
 
     The outcome of DRIFTS is 1 if the net drifts, otherwise 0.
     """
     net, x, how = job.net, job.x, job.how
     if job.task == DRIFTS:
-        return 1.0 if drifts(net) else 0.0
+        return 1 if drifts(net) else 0
     if job.task == SETTLE:
-        return float(settle(net, how.sea, x, how.step, job.enough))
+        return settle(net, how.sea, x, how.step, job.enough)
     if job.task == CLOSE:
-        return float(close_net(net, x, how, job.enough, job.known))
+        return close_net(net, x, how, job.enough, job.known)
     failure = write_residual(net, x, how, job.task == SLOPES)
     if job.task == MARCH and failure == GOES_ON:
         record_shapes(net, x, how)
-    return float(failure)
+    return failure

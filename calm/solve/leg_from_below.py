@@ -106,7 +106,6 @@ def weight_of(course: Course, stage: Stage, excess: float) -> float:
     return weight
 
 
-@within
 def pull_of(up: float, east: float, north: float) -> Load:
     """Return a load that exerts the given force [N] and has no drag."""
     return Load(0, -1, 0.0, 0.5, 0.0, up, 0.0, 0.0, 0.0, 0, 0.0, east, north, 0.0, 0.0)

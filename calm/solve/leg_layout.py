@@ -384,7 +384,7 @@ def refuse_misplaced(laid: LaidLeg, leg: Solution, near: float, before: int) -> 
         height = np.where(np.arange(len(height)) > leg.piece_nodes[leg.afloat[0], 1], height, 0.0)
         if leg.buoyancy_used < 0.0:
             raise Status.ABOVE_SURFACE.because(
-                "Parts other than the float at the upper end of {piece} would surface, too.",
+                "Besides {piece}, other parts of the leg would surface.",
                 piece(0),
             )
     highest = int(np.argmax(height))

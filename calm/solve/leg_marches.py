@@ -158,7 +158,7 @@ def shed_by(leg: LegRow, passed: Sequence[float]) -> float:
 
 
 def row_of(net: NetProblem, i: int, k: int) -> int:
-    """Return the row of the residual that result k of a leg's march contributes to, or -1.
+    """Return the row of the residual to which result k of a leg's march is added, or -1 for none.
 
     The results are listed at `calm.solve.leg_numbers.OUT`.
     """
@@ -278,7 +278,8 @@ def take_scale(net: NetProblem, i: int, x: Sequence[float], loose: float) -> Non
 
     The pull of a slack leg may be a thousandth of other pulls. Finite differences with steps suited
     to such large pulls would miss the derivatives of a slack leg. No scale exceeds the weight of
-    the heaviest leg; otherwise legs that are too short would be stretched until they meet.
+    the heaviest leg. With a larger scale, legs that are too short to meet would be stretched until
+    they meet.
     """
     leg, out = net.legs[i], net.passed[i]
     if leg.own == 1:

@@ -61,7 +61,7 @@ class LegRow(NamedTuple):
     rides : as in `Limits`
     sheds : Strouhal number over diameter [1/m] at the end where vortices set the strumming
         frequency; 0 for a leg that does not strum
-    past_east, past_north, past_up : current at this end [m/s]
+    past_east, past_north, past_up : current at the end to which `sheds` refers [m/s]
     weight : sum of the absolute net forces of the pieces [N], the scale of forces on a slack leg
     stages, cables, surfacing, rows, pieces : numbers of stages, of cables, of buoyant pieces, of
         rows in the hull table, and of pieces
@@ -157,9 +157,9 @@ class Marching(NamedTuple):
     step : angle step [rad]
     cuts, given : index of the segment list, and whether the march uses the listed segments;
         otherwise it chooses segments and writes them to the list
-    exact : whether segments are split at every level. The marches for the Jacobian must be split
-        like the march at the unperturbed unknowns, since a different split has more effect than the
-        small step
+    exact : whether segments are split at every level. The marches for the Jacobian must split
+        segments like the march at the unchanged unknowns, because a different split has more effect
+        than the small step of an unknown
     record : index of the record to which shapes are written
     loose : pull of a slack leg towards its anchor, as a fraction of the leg's force scale. The true
         value is zero; a search may start with a larger value, so that slack legs determine the
@@ -198,7 +198,6 @@ def leg_of(net: NetProblem, sea: Sea, i: int) -> LineProblem:
     )  # fmt: skip
 
 
-@within
 def bed_of(net: NetProblem, i: int) -> Bed:
     """Return the seabed below leg i."""
     leg, bed = net.legs[i], net.lines.limits.bed
@@ -230,13 +229,13 @@ def place_of(net: NetProblem, i: int, x: Sequence[float], end: int) -> tuple[flo
     return held[3 * end], held[3 * end + 1], held[3 * end + 2]
 
 
-@within
 def end_height(leg: LegRow, lies: bool, pull: float) -> float:
     """Return the height of the lower end of an anchored leg [m].
 
     A leg on the seabed ends at the seabed; a leg that pulls upwards ends at the top of its anchor.
-    The height changes gradually while the pull is less than the weight of a line whose length is
-    the height of the anchor. This avoids a jump, so that neither state has to be guessed.
+    In between, the height is proportional to the pull, up to the weight of a line as long as the
+    anchor is high. The height therefore has no jump, and the solver need not guess where the leg
+    ends.
 
     Parameters
     ----------

@@ -6,7 +6,7 @@ from typing import NamedTuple
 from calm.physics.line import ENDS, SEGMENT, Record, off_bed
 from calm.physics.passing import NODES
 from calm.solve.accuracy import UNKNOWN_ERRORS, Errors, Extent, extrapolate
-from calm.solve.closing import Closed, Root, not_closed, planned, polish, segments_of
+from calm.solve.closing import Closed, Root, miss_at, not_closed, planned, polish, segments_of
 from calm.solve.fineness import MOST_ROUNDS, finer
 from calm.solve.problem import (
     BELOW,
@@ -18,7 +18,6 @@ from calm.solve.problem import (
     OTHER,
     About,
     LineProblem,
-    Search,
 )
 from calm.solve.solution import (
     BELOW_SEABED,
@@ -75,7 +74,7 @@ def refused(ending: int, value: float, piece: int, root: Root) -> FoundShape:
     return not_audited(closed, UNKNOWN_ERRORS, root.x, 0.0)
 
 
-def settle_line(search: Search, root: Root, hangs: bool) -> FoundShape:
+def settle_line(problem: LineProblem, root: Root, hangs: bool) -> FoundShape:
     """Close a line near a coarse root, on sufficiently short segments.
 
     The shape is written to the record `FINE` and is not yet audited.
@@ -85,11 +84,11 @@ def settle_line(search: Search, root: Root, hangs: bool) -> FoundShape:
     hangs : whether the line must stay clear of the seabed; if so, a shape far below the seabed is
         rejected
     """
-    problem, limits = search.problem, search.problem.limits
+    limits = problem.limits
     coarse = fine = not_closed(NO_SHAPE_NEAR, 0.0, root)
     errors, step, records = UNKNOWN_ERRORS, limits.angle_step, problem.work.records
     for _ in range(MOST_ROUNDS):
-        coarse, fine = close_both(search, fine.root, step, hangs)
+        coarse, fine = close_both(problem, fine.root, step, hangs)
         if fine.ending != FOUND:
             return not_audited(fine, UNKNOWN_ERRORS, fine.root.x, 0.0)
         errors = extrapolate(
@@ -106,19 +105,19 @@ def settle_line(search: Search, root: Root, hangs: bool) -> FoundShape:
     return not_audited(fine, errors, share, grounded)
 
 
-def close_both(search: Search, root: Root, step: float, hangs: bool) -> tuple[Closed, Closed]:
-    """Close a line on segments chosen at twice an angle step, and then on halved segments.
+def close_both(problem: LineProblem, root: Root, step: float, hangs: bool) -> tuple[Closed, Closed]:
+    """Close a line on segments for twice the given angle step, and then on the halved segments.
 
     `hangs` is as in `settle_line`.
     """
-    root, problem = planned(search, root, 2.0 * step), search.problem
-    coarse, fine = closed_between(search, root)
+    root = planned(problem, root, 2.0 * step)
+    coarse, fine = closed_between(problem, root)
     if fine.ending == FOUND:
         return coarse, refused_far_below(problem, fine, FINE, hangs)
-    coarse = polish_hanging(search, root, CHOSEN, COARSE, hangs)
+    coarse = polish_hanging(problem, root, CHOSEN, COARSE, hangs)
     if coarse.ending != FOUND:
         return coarse, coarse
-    return coarse, polish_hanging(search, coarse.root, HALVED, FINE, hangs)
+    return coarse, polish_hanging(problem, coarse.root, HALVED, FINE, hangs)
 
 
 def extent_of(closed: Closed) -> Extent:
@@ -126,12 +125,12 @@ def extent_of(closed: Closed) -> Extent:
     return Extent(closed.nodes, closed.hanging, closed.landed)
 
 
-def polish_hanging(search: Search, root: Root, cuts: int, record: int, hangs: bool) -> Closed:
+def polish_hanging(problem: LineProblem, root: Root, cuts: int, record: int, hangs: bool) -> Closed:
     """Close a line by `polish`.
 
     If the line must stay clear of the seabed (`hangs`), a shape far below the seabed is rejected.
     """
-    return refused_far_below(search.problem, polish(search, root, cuts, record), record, hangs)
+    return refused_far_below(problem, polish(problem, root, cuts, record), record, hangs)
 
 
 def refused_far_below(problem: LineProblem, closed: Closed, record: int, hangs: bool) -> Closed:
@@ -159,15 +158,15 @@ def lowest_node(problem: LineProblem, record: Record, nodes: int) -> tuple[int, 
     return lowest, least
 
 
-def closed_between(search: Search, root: Root) -> tuple[Closed, Closed]:
-    """Close a line of a batch on chosen and on halved segments, by linear interpolation.
+def closed_between(problem: LineProblem, root: Root) -> tuple[Closed, Closed]:
+    """Close a line of a batch by linear interpolation, on the chosen and on the halved segments.
 
     Two shapes on the chosen segments, in the records `OTHER` and `COARSE`, show how every node
-    moves with the unknown. Both closed shapes follow from this movement and from one march on the
-    halved segments. The outcome is not `FOUND` if the closed shapes are too far from the marched
-    shapes, or if the line may lie on the seabed.
+    moves as the unknown changes. Both closed shapes follow from this movement and from one march on
+    the halved segments. The outcome is not `FOUND` if the closed shapes are too far from the
+    marched shapes, or if the line may lie on the seabed.
     """
-    problem, unknown = search.problem, root.unknown
+    unknown = root.unknown
     limits, work = problem.limits, problem.work
     none = not_closed(NO_SHAPE_NEAR, 0.0, root)
     if limits.near == 0.0 or isnan(root.miss) or unknown.sought > 0 or unknown.lands:
@@ -180,7 +179,7 @@ def closed_between(search: Search, root: Root) -> tuple[Closed, Closed]:
         if not 0.0 < x < high or x == before:
             return none, none
         about = About(problem, unknown, limits.angle_step, CHOSEN, True, COARSE)
-        miss, nodes = search.miss(about, x), int(work.left[NODES])
+        miss, nodes = miss_at(about, x), int(work.left[NODES])
         slope = (miss - last) / (x - before)
         if not slope < 0.0:
             return none, none
@@ -191,7 +190,7 @@ def closed_between(search: Search, root: Root) -> tuple[Closed, Closed]:
                 work.records[OTHER][column][n] = work.records[COARSE][column][n]
         before, last, x = x, miss, x - miss / slope
     closing = -miss / slope
-    off = search.miss(About(problem, unknown, limits.angle_step, HALVED, True, FINE), x)
+    off = miss_at(About(problem, unknown, limits.angle_step, HALVED, True, FINE), x)
     moved = abs(off) + abs(miss - last)
     if not abs(off) <= min(20.0 * abs(miss - last), FAR * limits.span):
         return none, none

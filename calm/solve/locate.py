@@ -1,7 +1,7 @@
 """Search for approximate equilibria of a moored line.
 
 Depths of the free end are tried downwards from that of the upright line. If the upright line would
-reach out of the water, floats at the surface are tried, too.
+reach out of the water, floats at the surface are also tried.
 """
 
 from math import isnan, nan, sqrt
@@ -27,7 +27,6 @@ from calm.solve.problem import (
     MOST_AFLOAT,
     NOT_RECORDED,
     LineProblem,
-    Search,
     Unknown,
 )
 from calm.solve.solution import (
@@ -85,7 +84,7 @@ class CoarseRoots(NamedTuple):
     other: Root
 
 
-def locate(search: Search, lands: bool, first: bool) -> CoarseRoots:
+def locate(problem: LineProblem, lands: bool, first: bool) -> CoarseRoots:
     """Find approximate roots for a line with a touchdown (`lands`), or clear of the seabed.
 
     Roots at which the miss grows with depth are unstable and are ignored.
@@ -94,32 +93,31 @@ def locate(search: Search, lands: bool, first: bool) -> CoarseRoots:
     ----------
     first : whether to stop at the highest root
     """
-    problem = search.problem
     unknown = whole_line(problem, lands)
     none = Root(False, unknown, nan, nan, nan)
     upright = max(-problem.limits.standing - unknown.goal, 0.0)
     samples = problem.work.samples
     count, samples[0][0] = 1, upright
-    samples[1][0] = coarse_miss(search, unknown, upright)
+    samples[1][0] = coarse_miss(problem, unknown, upright)
     if samples[1][0] < 0.0 < upright:
         # the drag of the current stretches the line further
         samples[0][1], samples[1][1] = upright, samples[1][0]
-        samples[0][0], samples[1][0] = 0.0, coarse_miss(search, unknown, 0.0)
+        samples[0][0], samples[1][0] = 0.0, coarse_miss(problem, unknown, 0.0)
         count = 2
     top, high = samples[0][0], samples[1][0]
     if isnan(high):
         return stopped(problem, none)
     highest = other = none
     if high < 0.0:
-        at_surface = surface_root(search, unknown, high)
+        at_surface = surface_root(problem, unknown, high)
         if at_surface.ending != FOUND:
             return at_surface
         highest, other = at_surface.root, at_surface.other
     elif top == 0.0:
-        highest = awash(search, unknown, high)
+        highest = awash(problem, unknown, high)
         if isnan(highest.miss) and highest.found:
             return stopped(problem, none)
-    count = samples_below(search, unknown, count)
+    count = samples_below(problem, unknown, count)
     if count == 0:
         return stopped(problem, none)
     before: Sample = (nan, nan)
@@ -129,14 +127,14 @@ def locate(search: Search, lands: bool, first: bool) -> CoarseRoots:
         if 0 < i < count - 1:
             after = (samples[0][i + 1], samples[1][i + 1])
             earlier = (samples[0][i - 1], samples[1][i - 1])
-            between = dip(search, unknown, earlier, here, after)
+            between = dip(problem, unknown, earlier, here, after)
             if isnan(between[1]):
                 return stopped(problem, none)
         upper, second = (between, here) if between[0] < here[0] else (here, between)
         for step in range(2):
             lower = upper if step == 0 else second
             if before[1] >= 0.0 > lower[1]:
-                root = coarse_root(search, unknown, before[0], before[1], lower[0], lower[1])
+                root = coarse_root(problem, unknown, before[0], before[1], lower[0], lower[1])
                 if isnan(root.miss):
                     return stopped(problem, none)
                 if highest.found:
@@ -156,16 +154,16 @@ def stopped(problem: LineProblem, none: Root) -> CoarseRoots:
     return CoarseRoots(MARCH_STOPPED, problem.work.left[FAILURE], none, none)
 
 
-def sample(search: Search, unknown: Unknown, count: int, depth: float) -> int:
+def sample(problem: LineProblem, unknown: Unknown, count: int, depth: float) -> int:
     """Add the miss for a depth of the free end to the samples, and return the number of samples."""
-    miss = coarse_miss(search, unknown, depth)
-    samples = search.problem.work.samples
+    miss = coarse_miss(problem, unknown, depth)
+    samples = problem.work.samples
     samples[0][count], samples[1][count] = depth, miss
     return count + 1
 
 
-def samples_below(search: Search, unknown: Unknown, count: int) -> int:
-    """Sample the miss at increasing depths of the free end, so that its roots are separated.
+def samples_below(problem: LineProblem, unknown: Unknown, count: int) -> int:
+    """Sample the miss at increasing depths of the free end, to separate the roots of the miss.
 
     Return the number of samples, or 0 if a march fails.
 
@@ -173,25 +171,25 @@ def samples_below(search: Search, unknown: Unknown, count: int) -> int:
     increases. There is then at most one root, and an increase in depth by the miss brackets this
     root. If the current grows or turns significantly, the depths are scanned in equal steps.
     """
-    problem, limits = search.problem, search.problem.limits
+    limits = problem.limits
     samples, deepest = problem.work.samples, limits.depth
     top, high = samples[0][0], samples[1][0]
     depth, low = samples[0][count - 1], samples[1][count - 1]
     growth = growth_below(problem.sea, top)
     if growth > 0.0 and (high < 0.0 or high > limits.allowed):
-        fall = largest_fall(search, unknown, top)
+        fall = largest_fall(problem, unknown, top)
         if isnan(fall):
             return 0
         if fall * growth > 0.25:
             last = min(depth + 1.02 * fall, deepest)
             step = (last - depth) / SCAN
             for k in range(len(NEAR)):
-                count = sample(search, unknown, count, depth + NEAR[k] * step)
+                count = sample(problem, unknown, count, depth + NEAR[k] * step)
             for k in range(1, SCAN + 1):
                 at = last if k == SCAN else depth + k * step
-                count = sample(search, unknown, count, at)
+                count = sample(problem, unknown, count, at)
             if last < deepest:
-                count = sample(search, unknown, count, deepest)
+                count = sample(problem, unknown, count, deepest)
             for k in range(count):
                 if isnan(samples[1][k]):
                     return 0
@@ -200,16 +198,19 @@ def samples_below(search: Search, unknown: Unknown, count: int) -> int:
     while high >= 0.0 and low >= 0.0 and depth < deepest:
         shift = max(low, shift)
         depth, shift = min(depth + shift, deepest), 2.0 * shift
-        count = sample(search, unknown, count, depth)
+        count = sample(problem, unknown, count, depth)
         low = samples[1][count - 1]
     return 0 if isnan(low) else count
 
 
-def dip(search: Search, unknown: Unknown, before: Sample, here: Sample, after: Sample) -> Sample:
-    """Search near the middle one of three samples for a sample of opposite sign, if the miss dips.
+def dip(
+    problem: LineProblem, unknown: Unknown, before: Sample, here: Sample, after: Sample
+) -> Sample:
+    """Search for a sample with the opposite sign near the middle of three samples.
 
-    The miss dips if its absolute value is smallest at the middle sample. The golden-section method
-    is used. The middle sample is returned if no sample of opposite sign is found.
+    There is a search only if the absolute value of the miss is smallest at the middle sample. The
+    search uses the golden-section method. The middle sample is returned if no sample with the
+    opposite sign is found.
     """
     sign = 1.0 if here[1] > 0.0 else -1.0
     if not 0.0 < sign * here[1] < min(sign * before[1], sign * after[1]):
@@ -218,7 +219,7 @@ def dip(search: Search, unknown: Unknown, before: Sample, here: Sample, after: S
     for _ in range(DIP_SAMPLES):
         left = best[0] - low[0] > high[0] - best[0]
         x = best[0] - GOLDEN * (best[0] - low[0] if left else best[0] - high[0])
-        tried = (x, coarse_miss(search, unknown, x))
+        tried = (x, coarse_miss(problem, unknown, x))
         if isnan(tried[1]) or sign * tried[1] <= 0.0:
             return tried
         if sign * tried[1] < sign * best[1]:
@@ -260,12 +261,12 @@ def growth_below(sea: Sea, depth: float) -> float:
     return rise / max(sqrt(greatest), 1e-300)
 
 
-def largest_fall(search: Search, unknown: Unknown, depth: float) -> float:
+def largest_fall(problem: LineProblem, unknown: Unknown, depth: float) -> float:
     """Return an upper bound on the knockdown [m].
 
     The bound assumes that the strongest current acts at all depths.
     """
-    problem, sea = search.problem, search.problem.sea
+    sea = problem.sea
     greatest, fastest = 1, -1.0
     for k in range(1, len(sea.intervals)):
         here = sea.intervals[k]
@@ -274,7 +275,7 @@ def largest_fall(search: Search, unknown: Unknown, depth: float) -> float:
             greatest, fastest = k, square
     most = sea.intervals[greatest]
     evenly = in_even_current(problem, most.u, most.v, most.w)
-    miss = coarse_miss(Search(search.miss, evenly), unknown, depth)
+    miss = coarse_miss(evenly, unknown, depth)
     return nan if isnan(miss) else max(miss, problem.limits.allowed)
 
 
@@ -313,7 +314,7 @@ def in_sea(problem: LineProblem, sea: Sea) -> LineProblem:
     )  # fmt: skip
 
 
-def awash(search: Search, unknown: Unknown, immersed: float) -> Root:
+def awash(problem: LineProblem, unknown: Unknown, immersed: float) -> Root:
     """Find the highest root with a float at the surface, for a line that also closes submerged.
 
     Both equilibria are possible if the float has less drag at the surface, or if the wind acts
@@ -324,24 +325,23 @@ def awash(search: Search, unknown: Unknown, immersed: float) -> Root:
     immersed : miss with the free end at the surface and all buoyancy in use [m]; it must be at
         least 0
     """
-    problem = search.problem
     none = Root(False, unknown, nan, nan, nan)
     if not problem.limits.rides or len(problem.surfacing) == 0:
         return none
     unknown = with_sought(unknown, 0, True)
-    share, high = SHARES[0], coarse_miss(search, unknown, SHARES[0])
+    share, high = SHARES[0], coarse_miss(problem, unknown, SHARES[0])
     for k in range(1, len(SHARES) + 1):
         following, low = 1.0, immersed
         if k < len(SHARES):
             following = SHARES[k]
-            low = coarse_miss(search, unknown, following)
+            low = coarse_miss(problem, unknown, following)
         if isnan(low) or isnan(high):
             return Root(True, unknown, nan, nan, nan)
         if high > 0.0 >= low:
-            root = coarse_root(search, unknown, following, low, share, high)
+            root = coarse_root(problem, unknown, following, low, share, high)
             if isnan(root.miss) or len(problem.surfacing) == 1:
                 return root
-            height = height_at(search, root, 1)
+            height = height_at(problem, root, 1)
             if isnan(height):
                 return Root(True, unknown, nan, nan, nan)
             return root if height <= problem.limits.allowed else none
@@ -349,21 +349,21 @@ def awash(search: Search, unknown: Unknown, immersed: float) -> Root:
     return none
 
 
-def surface_root(search: Search, unknown: Unknown, deep: float) -> CoarseRoots:
+def surface_root(problem: LineProblem, unknown: Unknown, deep: float) -> CoarseRoots:
     """Find the equilibrium of a line with one or several floats at the surface.
 
     The root is the fraction of the lowest float's buoyancy that is in use. The top float is tried
-    first. If the line closes only with the next float out of the water, or not at all, the next
-    float is also at the surface. The part of the line between the two floats then determines the
-    used fraction of the upper float's buoyancy, and the used fraction of the next float's buoyancy
-    closes the line. A single float rides at its draft; several floats are assumed just below the
-    surface.
+    first. If the line does not close, or closes only with the next float out of the water, the next
+    float is also placed at the surface. The part of the line between the two floats then determines
+    the used fraction of the upper float's buoyancy, and the used fraction of the next float's
+    buoyancy closes the line. A single float rides at its draft; several floats are assumed just
+    below the surface.
 
     Parameters
     ----------
     deep : miss with the free end at the surface and all buoyancy in use [m]; it must be below 0
     """
-    problem, limits = search.problem, search.problem.limits
+    limits = problem.limits
     none = Root(False, unknown, nan, nan, nan)
     rides = unknown.rides
     count = len(problem.surfacing)
@@ -371,19 +371,19 @@ def surface_root(search: Search, unknown: Unknown, deep: float) -> CoarseRoots:
         if k == MOST_AFLOAT:
             return CoarseRoots(TOO_MANY_AFLOAT, 0.0, none, none)
         unknown = with_sought(unknown, k, rides)
-        if limits.at_rest and (unknown.lands or slack_at_rest(search, unknown)):
+        if limits.at_rest and (unknown.lands or slack_at_rest(problem, unknown)):
             return CoarseRoots(SLACK_AT_REST, 0.0, none, none)
-        unloaded = coarse_miss(search, unknown, 0.0)
+        unloaded = coarse_miss(problem, unknown, 0.0)
         if isnan(unloaded):
             return stopped(problem, none)
         if unloaded > 0.0:
             other, height = none, 0.0
             if k == 0 and turns_back(problem.sea):
-                root, other = roots_afloat(search, unknown)
+                root, other = roots_afloat(problem, unknown)
             else:
-                root = coarse_root(search, unknown, 1.0, deep, 0.0, unloaded)
+                root = coarse_root(problem, unknown, 1.0, deep, 0.0, unloaded)
             if not isnan(root.miss) and k + 1 < count:
-                height = height_at(search, root, k + 1)
+                height = height_at(problem, root, k + 1)
             if isnan(root.miss) or isnan(height):
                 return stopped(problem, none)
             if k + 1 == count or height <= limits.allowed:
@@ -392,14 +392,14 @@ def surface_root(search: Search, unknown: Unknown, deep: float) -> CoarseRoots:
             break
         rides = False
         unknown = with_sought(unknown, k, rides)
-        surfaced = surfaced_root(search, unknown, k + 1)
+        surfaced = surfaced_root(problem, unknown, k + 1)
         if isnan(surfaced.miss) and surfaced.found:
             return stopped(problem, none)
         if not surfaced.found:
             break
         problem.work.shares[0][k] = surfaced.x
         problem.work.shares[1][k] = surfaced.slope
-        deep = coarse_miss(search, with_sought(unknown, k + 1, rides), 1.0)
+        deep = coarse_miss(problem, with_sought(unknown, k + 1, rides), 1.0)
         if isnan(deep):
             return stopped(problem, none)
         if deep >= 0.0:
@@ -431,20 +431,20 @@ def turns_back(sea: Sea) -> bool:
     return False
 
 
-def roots_afloat(search: Search, unknown: Unknown) -> tuple[Root, Root]:
+def roots_afloat(problem: LineProblem, unknown: Unknown) -> tuple[Root, Root]:
     """Find two stable roots for the used fraction of the top float's buoyancy.
 
     If there are several roots, the first result is the root that is reached as the current rises
     from zero. If there is only one root, the second result is not `found`.
     """
-    lowest, highest = outer_roots(search, unknown)
+    lowest, highest = outer_roots(problem, unknown)
     if isnan(lowest.miss) or lowest.x == highest.x:
         return lowest, Root(False, unknown, nan, nan, nan)
-    problem, root = search.problem, lowest
+    root = lowest
     small = 1e-4 * problem.limits.span
     for step in range(1, CURRENT_STEPS + 1):
         weaker = in_weaker_current(problem, step / CURRENT_STEPS)
-        rising = Search(search.miss, weaker)
+        rising = weaker
         if step == 1:
             root, _ = outer_roots(rising, unknown)
         elif root.found:
@@ -458,49 +458,50 @@ def roots_afloat(search: Search, unknown: Unknown) -> tuple[Root, Root]:
     return highest, lowest
 
 
-def outer_roots(search: Search, unknown: Unknown) -> tuple[Root, Root]:
+def outer_roots(problem: LineProblem, unknown: Unknown) -> tuple[Root, Root]:
     """Find the stable roots with the smallest and the largest used fraction of buoyancy.
 
     A root is stable if the miss falls as more buoyancy is used. The roots are not `found` if no
     root is stable; their miss is NaN if a march failed.
     """
     lowest = highest = Root(False, unknown, nan, nan, nan)
-    share, high = 0.0, coarse_miss(search, unknown, 0.0)
+    share, high = 0.0, coarse_miss(problem, unknown, 0.0)
     for k in range(1, SHARE_STEPS + 1):
         following = k / SHARE_STEPS
-        low = coarse_miss(search, unknown, following)
+        low = coarse_miss(problem, unknown, following)
         if high > 0.0 >= low:
-            highest = coarse_root(search, unknown, following, low, share, high)
+            highest = coarse_root(problem, unknown, following, low, share, high)
             lowest = lowest if lowest.found else highest
         share, high = following, low
     return lowest, highest
 
 
-def height_at(search: Search, root: Root, lower: int) -> float:
+def height_at(problem: LineProblem, root: Root, lower: int) -> float:
     """Return the height [m] of the top of float number `lower` above the surface, at a root."""
-    miss = coarse_miss(search, down_to(search.problem, root.unknown, lower), root.x)
-    return nan if isnan(miss) else search.problem.work.left[Z]
+    miss = coarse_miss(problem, down_to(problem, root.unknown, lower), root.x)
+    return nan if isnan(miss) else problem.work.left[Z]
 
 
-def surfaced_root(search: Search, unknown: Unknown, lower: int) -> Root:
+def surfaced_root(problem: LineProblem, unknown: Unknown, lower: int) -> Root:
     """Find the used fraction of a float's buoyancy that brings the next float to the surface."""
-    part = down_to(search.problem, unknown, lower)
-    loaded, unloaded = coarse_miss(search, part, 1.0), coarse_miss(search, part, 0.0)
+    part = down_to(problem, unknown, lower)
+    loaded, unloaded = coarse_miss(problem, part, 1.0), coarse_miss(problem, part, 0.0)
     if isnan(loaded) or isnan(unloaded):
         return Root(True, part, nan, nan, nan)
-    if abs(unloaded) <= search.problem.limits.allowed:
+    if abs(unloaded) <= problem.limits.allowed:
         return Root(True, part, 0.0, unloaded, loaded - unloaded)
     if loaded >= 0.0 or unloaded < 0.0:
         return Root(False, part, nan, nan, nan)
-    return coarse_root(search, part, 1.0, loaded, 0.0, unloaded)
+    return coarse_root(problem, part, 1.0, loaded, 0.0, unloaded)
 
 
-def slack_at_rest(search: Search, unknown: Unknown) -> bool:
-    """Return whether the line is slack in still water at the smallest used buoyancy fraction.
+def slack_at_rest(problem: LineProblem, unknown: Unknown) -> bool:
+    """Return whether a line in still water is slack with its float at the surface.
 
-    This fraction just holds the line upright, see `BuoyantPiece.least`.
+    The float uses only the fraction `BuoyantPiece.least` of its buoyancy, which just holds the line
+    upright.
     """
     assert unknown.sought != BELOW
-    least = search.problem.surfacing[unknown.sought].least
+    least = problem.surfacing[unknown.sought].least
     share = min(max(least, 0.0) * (1.0 + 1e-9) + 1e-9, 1.0)
-    return coarse_miss(search, unknown, share) < 0.0
+    return coarse_miss(problem, unknown, share) < 0.0

@@ -8,16 +8,16 @@ are derivatives.
 
 from collections.abc import MutableSequence, Sequence
 from dataclasses import replace
-from typing import NamedTuple
+from math import nan
 
 import numpy as np
 
-from calm.physics.compiled import by_address, outcome
+from calm.physics.compiled import outcome
 from calm.physics.line import NO_ROOM, Floats, Line, Trace, Water
 from calm.physics.passing import FAILURE
 from calm.solve.accuracy import Errors, take_as_marched
 from calm.solve.audit import referee_of
-from calm.solve.closing import Closed, Root, miss_at, not_closed, planned, polish, whole_line
+from calm.solve.closing import Closed, Root, not_closed, planned, polish, whole_line
 from calm.solve.finish import closing_refusal, solution_found
 from calm.solve.line_shape import FoundShape, not_audited
 from calm.solve.locate import locate
@@ -25,11 +25,8 @@ from calm.solve.problem import (
     BELOW,
     CHOSEN,
     FINE,
-    NOT_RECORDED,
     ROOM,
-    About,
     LineProblem,
-    Search,
     Unknown,
     problem_of,
 )
@@ -43,9 +40,7 @@ from calm.solve.solution import (
     Solution,
     Status,
     refuse_unsupported,
-    standing_lift,
 )
-from calm.solve.starts import fill_starts
 from calm.solve.two_speeds import CompiledPart, runs_compiled
 
 MOST_DEPTHS = 500
@@ -88,15 +83,13 @@ def solve_mooring(line: Line, water: Water, settings: Settings | None = None) ->
     """
     settings = settings or Settings()
     refuse_endless(line, water)
-    lift = standing_lift(line, water)
-    refuse_unsupported(line, water, lift)
+    refuse_unsupported(line, water)
     compiled = runs_compiled(settings, line)
     room = ROOM
     while True:
-        problem = problem_of(line, water, settings, compiled=compiled, room=room, lift=lift)
-        search = search_of(problem, compiled)
+        problem = problem_of(line, water, settings, compiled=compiled, room=room)
         referee = referee_of(line, water, 0.0, compiled)
-        found = find_compiled(search, referee) if compiled else find_shape(search, referee)
+        found = find_compiled(problem, referee) if compiled else find_shape(problem, referee)
         if not lacks_room(problem):
             break
         room *= MORE_ROOM
@@ -106,20 +99,10 @@ def solve_mooring(line: Line, water: Water, settings: Settings | None = None) ->
     return solution_found(found, problem, line, water, settings)
 
 
-def find_compiled(search: Search, referee: Referee) -> FoundShape:
+def find_compiled(problem: LineProblem, referee: Referee) -> FoundShape:
     """Run `find_shape` in compiled code."""
-    task = SearchTask(search, referee)
-    by_address(run_search, task)(task, 0.0)
-    return read_found(list(search.problem.work.found))
-
-
-def search_of(problem: LineProblem, compiled: bool) -> Search:
-    """Return a search that computes the miss by compiled or by interpreted code."""
-    if not compiled:
-        return Search(miss_at, problem)
-    whole = whole_line(problem, False)
-    about = About(problem, whole, 0.0, CHOSEN, False, NOT_RECORDED)
-    return Search(by_address(miss_at, about), problem)
+    outcome(run_search, True, problem, referee)
+    return read_found(list(problem.work.found))
 
 
 def lacks_room(problem: LineProblem) -> bool:
@@ -138,24 +121,11 @@ def refuse_endless(line: Line, water: Water) -> None:
         )
 
 
-class SearchTask(NamedTuple):
-    """Arguments of `run_search`, which are a search and the inputs of its audit."""
-
-    search: Search
-    referee: Referee
-
-
-def run_search(task: SearchTask, first: float) -> float:
-    """Run a search, write its result to the work arrays of the problem, and return the outcome.
-
-    If `first` is above 0, solve the line in uniform currents instead (see `fill_starts`). A batch
-    needs these solutions before its first profile.
-    """
-    if first > 0.0:
-        return float(fill_starts(task.search))
-    found = find_shape(task.search, task.referee)
-    write_found(found, task.search.problem.work.found)
-    return float(found.closed.ending)
+def run_search(problem: LineProblem, referee: Referee) -> int:
+    """Run a search, write its result to the work arrays of the problem, and return the outcome."""
+    found = find_shape(problem, referee)
+    write_found(found, problem.work.found)
+    return found.closed.ending
 
 
 ENDING, VALUE, PIECE, GOAL, SOUGHT, RIDES, LANDS, STAGES, UNKNOWN_VALUE, MISS, SLOPE = range(11)
@@ -234,8 +204,8 @@ class Nearby:
         self._room = 2 * len(self.solution.cut) + 64
         self._compiled = compiled = runs_compiled(settings, line, CompiledPart.NEARBY)
         problem = problem_of(line, water, settings, compiled=compiled, room=self._room)
-        search = search_of(problem, compiled)
-        closed: Closed = outcome(close_coarsely, compiled, search, self.solution.landed)
+        none = Root(False, whole_line(problem, self.solution.landed), nan, nan, nan)
+        closed: Closed = outcome(close_again, compiled, problem, none)
         if closed.ending != FOUND:
             raise closing_refusal(closed)
         self._root, work = closed.root, problem.work
@@ -266,11 +236,11 @@ class Nearby:
         NoEquilibrium
             The status is ``not-converged`` or ``slack``.
         """
-        search, closed = self._closed(line, self._water)
-        trace = Trace.of(search.problem.work.records[FINE], closed.nodes)
+        problem, closed = self._closed(line, self._water)
+        trace = Trace.of(problem.work.records[FINE], closed.nodes)
         position = trace.position
         position[:, :2] -= position[-1, :2]
-        return position, _used(search.problem, closed, line)
+        return position, _used(problem, closed, line)
 
     def solved(self, line: Line, water: Water) -> Solution:
         """Solve a different line on the segments of this line.
@@ -287,20 +257,21 @@ class Nearby:
         NoEquilibrium
             No shape passes every check, or only one of the two lines has a touchdown.
         """
-        search, closed = self._closed(line, water)
+        problem, closed = self._closed(line, water)
         base, compiled = self.solution, self._compiled
         if closed.landed != base.landed:
-            raise Status.NOT_CONVERGED.because("Only one of the lines has a part on the seabed.")
+            raise Status.NOT_CONVERGED.because(
+                "Of the solved line and the changed line, only one has a part on the seabed."
+            )
         errors = Errors(base.depth_error, base.tension_error, 0.0, base.lift_error, base.pull_error)
         referee = referee_of(line, water, 0.0, compiled)
         found = not_audited(closed, errors, closed.root.x, closed.grounded)
-        problem = search.problem
         record = problem.work.records[FINE]
         outcome(take_as_marched, compiled, record, closed.nodes)
         found = outcome(audited, compiled, problem, referee, found)
         return solution_found(found, problem, line, water, self._settings)
 
-    def _closed(self, line: Line, water: Water) -> tuple[Search, Closed]:
+    def _closed(self, line: Line, water: Water) -> tuple[LineProblem, Closed]:
         compiled = self._compiled
         problem = problem_of(line, water, self._settings, compiled=compiled, room=self._room)
         given, cables = self.solution.line, line.flexible
@@ -310,12 +281,11 @@ class Nearby:
         work.counts[:] = self._counts.tolist()
         for row in range(2):
             work.shares[row][:] = self._shares[row].tolist()
-        search = search_of(problem, compiled)
         moved = self._moved(water, problem)
-        closed: Closed = outcome(polish, compiled, search, moved, CHOSEN, FINE)
+        closed: Closed = outcome(close_again, compiled, problem, moved)
         if closed.ending != FOUND:
             raise closing_refusal(closed)
-        return search, closed
+        return problem, closed
 
     def _moved(self, water: Water, problem: LineProblem) -> Root:
         """Return the approximate root of this line for water of another depth."""
@@ -327,17 +297,21 @@ class Nearby:
         return Root(True, unknown, x, root.miss, root.slope)
 
 
-def close_coarsely(search: Search, lands: bool) -> Closed:
-    """Close a line once, on segments chosen at the angle step of its settings.
+def close_again(problem: LineProblem, root: Root) -> Closed:
+    """Close a line near a root, on the segments in the work arrays.
 
-    The shape is written to the record `FINE`.
+    If no root is known yet (`found` is false), choose segments for the angle step of the final
+    shape, and close the line once on these. The shape is written to the record `FINE`.
     """
-    located, step = locate(search, lands, False), search.problem.limits.angle_step
+    if root.found:
+        return polish(problem, root, CHOSEN, FINE)
+    located = locate(problem, root.unknown.lands, False)
+    step = problem.limits.angle_step
     if located.ending != FOUND:
         return not_closed(located.ending, located.value, located.root)
-    closed = polish(search, planned(search, located.root, step), CHOSEN, FINE)
+    closed = polish(problem, planned(problem, located.root, step), CHOSEN, FINE)
     if closed.ending == MISSES and located.other.found:  # as in `calm.solve.search.highest`
-        closed = polish(search, planned(search, located.other, step), CHOSEN, FINE)
+        closed = polish(problem, planned(problem, located.other, step), CHOSEN, FINE)
     return closed
 
 

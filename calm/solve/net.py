@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from calm.errors import NoEquilibrium
-from calm.physics.compiled import by_address
+from calm.physics.compiled import outcome
 from calm.physics.line import FAILURES, GOES_ON, NO_ROOM, Floats, Line, Trace, Water
 from calm.physics.profile import profile_of
 from calm.solve import leg_closing, leg_numbers
@@ -119,12 +119,11 @@ class NetSearch:
         """Run a task (see `NetTask`), and return its outcome and the resulting unknowns."""
         own: Any = x.copy() if self.compiled else x.tolist()
         job = NetTask(task, self.net, own, how, enough, False)
-        run = by_address(do_task, job) if self.compiled else do_task
-        ending = run(job, 0.0)
+        ending: int = outcome(do_task, self.compiled, job)
         closing = task in (leg_closing.CLOSE, leg_closing.SETTLE)
         if ending == (leg_closing.NEEDS_ROOM if closing else NO_ROOM):
             raise LacksRoom
-        return int(ending), np.array(own)
+        return ending, np.array(own)
 
     def marching(
         self, step: float, cuts: int, record: int, *, given: bool, loose: float = 0.0
@@ -179,7 +178,7 @@ class NetSearch:
             raise Status.SLACK.because(
                 "The net has no horizontal restraint: every anchored leg lies on the seabed and is "
                 "slack, so the net can be at any position between its anchors.",
-                advice="Shorten a leg, or set the current in which the net must hold its position.",
+                advice="Shorten a leg, or set the design current.",
             )
         left = np.abs(np.array(net.found) * np.array(net.rows))
         miss = float(left[: net.nodes_at].max())
@@ -307,7 +306,7 @@ def roughly_closed(net: NetSearch, near: NetSolution | None, loose: float = 0.0)
         closer = net.closed(x, step, leg_closing.NEAR, loose)
         stride = stride if closer is not None else 0.5 * stride
         x, fraction = (x, fraction) if closer is None else (closer, following)
-        why = f"its legs do not meet in more than {fraction:.0%} of the current"
+        why = f"its legs do not meet if the current exceeds {fraction:.0%} of its full speed"
     if x is None or fraction < 1.0:
         net.put_in(water)
         x = net.closed(net.begin(start_of(legs, net.nodes, water)), step, leg_closing.NEAR, loose)

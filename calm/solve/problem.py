@@ -1,6 +1,6 @@
 """A line prepared for the search, as plain numbers and work arrays."""
 
-from collections.abc import Callable, MutableSequence, Sequence
+from collections.abc import MutableSequence, Sequence
 from itertools import accumulate
 from math import degrees
 from typing import Any, NamedTuple
@@ -9,7 +9,7 @@ import numpy as np
 
 from calm.physics.hull import UNKNOWN_FLOAT, HullRow, SurfaceFloat
 from calm.physics.law_kinds import record_type
-from calm.physics.line import COLUMNS, Bed, Floats, Line, Water
+from calm.physics.line import COLUMNS, Bed, Line, Water, once_at_rest
 from calm.physics.passing import LEFT
 from calm.physics.profile import Interval, Sea, profile_of
 from calm.physics.track import ROD, Course, Load, Track
@@ -109,8 +109,8 @@ class Limits(NamedTuple):
     rides : whether the draft of the top float can be computed
     at_rest : whether there is neither current nor wind
     blown : whether there is wind
-    refused, refused_at_rest : result of `support_of` with current or wind, and result at rest; the
-        line is rejected without a search unless this is `SUPPORTED`
+    refused, refused_at_rest : result of `support_of` with current or wind, and result at rest. The
+        line is rejected without a search if the result that applies is not `SUPPORTED`
     """
 
     span: float
@@ -232,13 +232,6 @@ class About(NamedTuple):
     record: int
 
 
-class Search(NamedTuple):
-    """A problem, and the function that computes its miss (see `calm.solve.closing.miss_at`)."""
-
-    miss: Callable[[About, float], float]
-    problem: LineProblem
-
-
 def problem_of(
     line: Line,
     water: Water,
@@ -248,7 +241,6 @@ def problem_of(
     rough: bool = False,
     room: int = ROOM,
     intervals: int = 0,
-    lift: Floats | None = None,
 ) -> LineProblem:
     """Prepare a line and its water for the search.
 
@@ -259,20 +251,18 @@ def problem_of(
     room : number of segments that the work arrays hold
     intervals : largest number of depth intervals in any other water in which the line will be
         solved
-    lift : the `standing_lift` of the line, if known
     """
-    track = Track.of(line)
     profile = profile_of(water)
     span = float(line.length.sum()) if line.towed else water.depth
     floating = None if line.towed else line.floating
-    surfacing = []
+    surfacing: list[BuoyantPiece] = []
     upright = np.zeros(0)
     moving = at_rest = SUPPORTED
     standing = 0.0
     if not line.towed:
-        upright = standing_lift(line, water) if lift is None else lift
-        surfacing = _surfacing(line, water, track, upright)
-        standing = standing_length(line, upright)
+        upright = standing_lift(line, water)
+        surfacing = surfacing_pieces(line, water)
+        standing = standing_length(line, water)
         moving, at_rest = (support_of(upright, still)[0] for still in (False, True))
     blown = floating is not None and floating.blown
     excess = profile.excess_at(water.depth) if np.isfinite(water.depth) else 0.0
@@ -302,7 +292,7 @@ def problem_of(
     hull = () if floating is None or floating.hull is None else floating.hull.rows
     flexible: Any = line.flexible.astype(np.intp)
     if compiled:
-        course, sea = track.packed, profile.packed
+        course, sea = Track.of(line).packed, profile.packed
         loads: Any = course.loads
         course = course._replace(loads=loads.copy())
         rows: Any = np.array(surfacing, record_type(BuoyantPiece))
@@ -310,7 +300,7 @@ def problem_of(
         starts: Any = np.zeros((START_ROWS, STARTS if rough else 0))
         work = work_for(course, max(len(sea.intervals), intervals), room, True)
         return LineProblem(course, sea, loads, flexible, rows, afloat, hulls, limits, starts, work)
-    course, sea, none = track.course, profile.sea, [[0.0] * 0] * START_ROWS
+    course, sea, none = Track.of(line).course, profile.sea, [[0.0] * 0] * START_ROWS
     loads = course.loads
     course = course._replace(loads=list(loads))
     work = work_for(course, len(sea.intervals), room, False)
@@ -359,8 +349,10 @@ def reach_of(limits: Limits, step: float) -> float:
     return reach * degrees(step) * limits.span
 
 
-def _surfacing(line: Line, water: Water, track: Track, lift: Floats) -> list[BuoyantPiece]:
+@once_at_rest
+def surfacing_pieces(line: Line, water: Water) -> list[BuoyantPiece]:
     """Return the rigid buoyant pieces of a line, from the top down."""
+    track, lift = Track.of(line), standing_lift(line, water)
     at_surface = surface_lift(line, water).tolist()
     upto, carried = np.cumsum(line.length).tolist(), np.cumsum(lift).tolist()
     lowest = list(accumulate(reversed(carried), min))[::-1]

@@ -34,7 +34,6 @@ from calm.solve.problem import (
     OTHER,
     Limits,
     LineProblem,
-    Search,
     Unknown,
 )
 from calm.solve.solution import (
@@ -88,20 +87,19 @@ class Referee(NamedTuple):
     last: MutableSequence[int]
 
 
-def find_shape(search: Search, referee: Referee) -> FoundShape:
+def find_shape(problem: LineProblem, referee: Referee) -> FoundShape:
     """Find a shape clear of the seabed or with a touchdown. The likelier kind is tried first."""
-    problem = search.problem
     limits = problem.limits
     may_land = problem.course.landing < len(problem.course.stages)
     lands_first = may_land and limits.length > limits.depth
     if lands_first and limits.near > 0.0:
-        at_once = rising(search, referee)
+        at_once = rising(problem, referee)
         if at_once.closed.ending == FOUND:
             return at_once
-    first = highest(search, referee, lands_first)
+    first = highest(problem, referee, lands_first)
     if first.closed.ending == FOUND or first.closed.ending == MARCH_STOPPED or not may_land:
         return first
-    second = highest(search, referee, not lands_first)
+    second = highest(problem, referee, not lands_first)
     if second.closed.ending == FOUND or second.closed.ending == MARCH_STOPPED:
         return second
     if is_slack(first):
@@ -111,21 +109,20 @@ def find_shape(search: Search, referee: Referee) -> FoundShape:
     return second if lands_first else first
 
 
-def rising(search: Search, referee: Referee) -> FoundShape:
+def rising(problem: LineProblem, referee: Referee) -> FoundShape:
     """Find the shape of a line that may touch the seabed but clearly rises from its anchor.
 
     The line belongs to a batch. A line that descends anywhere, such as a line with a sag, is
     rejected here, since it could also lie on the seabed.
     """
-    problem = search.problem
-    lying, start = start_of(search, True), start_of(search, False)
+    lying, start = start_of(problem, True), start_of(problem, False)
     found = refused(NO_SHAPE_NEAR, 0.0, -1, start)
     if not lying.found or not start.found:
         return found
-    miss = coarse_miss(search, lying.unknown, lying.x)
+    miss = coarse_miss(problem, lying.unknown, lying.x)
     if isnan(miss) or problem.work.left[CAME_DOWN] >= 0.0:
         return found
-    found = shape_near(search, referee, start, False)
+    found = shape_near(problem, referee, start, False)
     if found.closed.ending != FOUND or not is_highest(problem, found.closed.root):
         return refused(NO_SHAPE_NEAR, 0.0, -1, start)
     last, heights = found.closed.nodes - 1, problem.work.records[FINE][2]
@@ -156,29 +153,28 @@ def other_of(problem: LineProblem, found: FoundShape) -> OtherEquilibrium:
     return OtherEquilibrium(depth, found.grounded, share, z, sqrt(x * x + y * y))
 
 
-def highest(search: Search, referee: Referee, lands: bool) -> FoundShape:
+def highest(problem: LineProblem, referee: Referee, lands: bool) -> FoundShape:
     """Find the highest shape of one kind, and attach the deepest shape if it differs.
 
     If `lands` is true, the shapes have a touchdown; otherwise they are clear of the seabed.
     """
-    problem = search.problem
     if not lands and problem.limits.lift <= 0.0:
         nowhere = Root(False, whole_line(problem, lands), nan, nan, nan)
         return refused(UNSUPPORTED, 0.0, -1, nowhere)
-    start = start_of(search, lands)
+    start = start_of(problem, lands)
     if start.found and lands:
-        start = planned(search, start, problem.limits.coarse_step)
+        start = planned(problem, start, problem.limits.coarse_step)
     if start.found and not isnan(start.miss):
-        found = shape_near(search, referee, start, lands)
+        found = shape_near(problem, referee, start, lands)
         if found.closed.ending == FOUND and is_highest(problem, found.closed.root):
             return found
-    located = locate(search, lands, problem.limits.near > 0.0)
+    located = locate(problem, lands, problem.limits.near > 0.0)
     if located.ending != FOUND:
         return refused(located.ending, located.value, -1, located.root)
-    found = shape_near(search, referee, located.root, lands)
+    found = shape_near(problem, referee, located.root, lands)
     if found.closed.ending == MISSES:  # the miss jumps there because a float tips over
-        located = locate(search, lands, False)
-        return shape_near(search, referee, located.other, lands) if located.other.found else found
+        located = locate(problem, lands, False)
+        return shape_near(problem, referee, located.other, lands) if located.other.found else found
     if found.closed.ending != FOUND or not located.other.found:
         return found
     if problem.limits.near > 0.0:  # a batch reports only the approximate share
@@ -186,7 +182,7 @@ def highest(search: Search, referee: Referee, lands: bool) -> FoundShape:
         share = OtherEquilibrium(0.0, 0.0, located.other.x, nan, nan)
         return with_other(found, share) if afloat else found
     keep(problem, OTHER, FINE, found)
-    second = shape_near(search, referee, located.other, lands)
+    second = shape_near(problem, referee, located.other, lands)
     other = other_of(problem, second) if second.closed.ending == FOUND else NO_OTHER
     keep(problem, FINE, OTHER, found)
     load_again(problem, found)
@@ -219,20 +215,20 @@ def load_again(problem: LineProblem, found: FoundShape) -> None:
     place(problem, root.unknown, root.x)
 
 
-def shape_near(search: Search, referee: Referee, root: Root, lands: bool) -> FoundShape:
+def shape_near(problem: LineProblem, referee: Referee, root: Root, lands: bool) -> FoundShape:
     """Return the audited shape near an approximate root, with or without a touchdown (`lands`).
 
     If only little of the line lies on the seabed, a shape clear of the seabed is also sought.
     """
-    problem, limits = search.problem, search.problem.limits
+    limits = problem.limits
     if not lands:
-        return audited(problem, referee, settle_line(search, root, True))
+        return audited(problem, referee, settle_line(problem, root, True))
     clear = hanging_clear(problem, root)
-    if isnan(coarse_miss(search, root.unknown, root.x)):
+    if isnan(coarse_miss(problem, root.unknown, root.x)):
         return refused(MARCH_STOPPED, problem.work.left[FAILURE], -1, root)
     if problem.work.left[CAME_DOWN] < 0.0:
-        return audited(problem, referee, settle_line(search, clear, False))
-    landed = audited(problem, referee, settle_line(search, root, False))
+        return audited(problem, referee, settle_line(problem, clear, False))
+    landed = audited(problem, referee, settle_line(problem, root, False))
     if landed.closed.ending != FOUND:
         return landed
     closed = landed.closed
@@ -242,7 +238,7 @@ def shape_near(search: Search, referee: Referee, root: Root, lands: bool) -> Fou
         return landed
     keep(problem, KEPT, FINE, landed)
     lying = other_of(problem, landed)
-    hanging = audited(problem, referee, settle_line(search, clear, True))
+    hanging = audited(problem, referee, settle_line(problem, clear, True))
     if hanging.closed.ending == MARCH_STOPPED:
         return hanging
     clear_of_it = other_of(problem, hanging) if hanging.closed.ending == FOUND else NO_OTHER
@@ -325,7 +321,7 @@ def ending_of_audit(off: float, moment: float) -> tuple[int, float]:
 
 
 def stated_errors(problem: LineProblem, found: FoundShape) -> Errors:
-    """Return error estimates that include errors which comparing two step sizes cannot reveal."""
+    """Return error estimates with the errors that a comparison of two step sizes cannot reveal."""
     closed, span, errors = found.closed, problem.limits.span, found.errors
     unclosed = abs(closed.root.miss) / span + UNSEEN
     record, greatest = problem.work.records[FINE], 0.0

@@ -11,7 +11,7 @@ import numpy as np
 
 from calm.errors import NoEquilibrium
 from calm.physics.hull import Riding
-from calm.physics.line import Floats, Integers, Line, Trace, Water
+from calm.physics.line import Floats, Integers, Line, Trace, Water, once_at_rest
 from calm.physics.seawater import REFERENCE_DENSITY
 
 LOOSEST_TOLERANCE = 2e-4
@@ -90,7 +90,8 @@ class Solution:
     reserve : unused buoyancy of the surface floats [N]
     carried : the line with the buoyancy and drag in effect, which are reduced for floats at the
         surface
-    riding : draft of the float at the surface, and the forces on this float; None if it is immersed
+    riding : draft of the float at the surface, and the forces on this float; None if no draft is
+        computed
     marches, segments : number of marches and number of segments used for this solution
     miss : height of the line's end above the top of the anchor or, for a tow, above the tow point
         [m]
@@ -209,16 +210,16 @@ class Status(Enum):
     )
     SLACK = (
         "slack",
-        "Shorten the line below the surface float, or set the current for which it is designed.",
+        "Shorten the line below the surface float, or set the design current.",
     )
     GROUNDED = (
         "grounded",
-        "Shorten, lighten or buoy up the lower part, or add buoyancy at the top.",
+        "Shorten or lighten the lower part, or add buoyancy to it or at the top.",
     )
     ANCHOR_LIFTS = ("anchor-lifts", "Use a heavier anchor, or less buoyancy.")
     ABOVE_SURFACE = (
         "above-surface",
-        "Shorten the line, or put the buoyancy that reaches the surface into the surface float.",
+        "Shorten the line, or combine all buoyancy that reaches the surface in one surface float.",
     )
 
     def __init__(self, label: str, advice: str) -> None:
@@ -259,6 +260,7 @@ class Status(Enum):
 ) = range(16)  # fmt: skip
 
 
+@once_at_rest
 def standing_lift(line: Line, water: Water) -> Floats:
     """Return the net buoyancy (n,) of every piece of an upright line, with its clamps [N].
 
@@ -268,7 +270,9 @@ def standing_lift(line: Line, water: Water) -> Floats:
     below = np.cumsum(line.length[::-1])[::-1] - 0.5 * line.length
     depth = np.maximum(water.depth - line.anchor_height - below, 0.0)
     density = water.density_at(depth)
-    return line.net_force((density - REFERENCE_DENSITY) * water.gravity)
+    lift = line.net_force((density - REFERENCE_DENSITY) * water.gravity)
+    lift.flags.writeable = False  # it is shared
+    return lift
 
 
 def surface_lift(line: Line, water: Water) -> Floats:
@@ -280,15 +284,13 @@ def surface_lift(line: Line, water: Water) -> Floats:
     return line.buoyancy + excess * water.gravity * line.volume
 
 
-def standing_length(line: Line, lift: Floats) -> float:
+@once_at_rest
+def standing_length(line: Line, water: Water) -> float:
     """Return the length of the upright line in still water [m].
 
     Each piece is stretched by its mean tension. The position of clamps on a piece is ignored.
-
-    Parameters
-    ----------
-    lift : result of `standing_lift`
     """
+    lift = standing_lift(line, water)
     tension = np.maximum(np.cumsum(lift) - 0.5 * lift, 0.0)
     strain: Floats = line.compliance * tension
     for piece, curve in enumerate(line.elongation):
@@ -304,8 +306,8 @@ SUPPORTED, TOO_HEAVY, FOLDS = range(3)
 def support_of(lift: Floats, at_rest: bool) -> tuple[int, int, float]:
     """Check whether a line has enough buoyancy.
 
-    Return `SUPPORTED`, `TOO_HEAVY` or `FOLDS`, the index of the piece below which the line folds
-    (or -1), and the missing buoyancy [N].
+    Return the outcome (`SUPPORTED`, `TOO_HEAVY` or `FOLDS`), the index of the piece below which the
+    line folds (-1 if the line does not fold), and the missing buoyancy [N].
 
     Parameters
     ----------
@@ -327,14 +329,10 @@ def support_of(lift: Floats, at_rest: bool) -> tuple[int, int, float]:
     return SUPPORTED, -1, 0.0
 
 
-def refuse_unsupported(line: Line, water: Water, lift: Floats) -> None:
+def refuse_unsupported(line: Line, water: Water) -> None:
     """Raise NoEquilibrium if a line has too little buoyancy, or folds in still water.
 
     In still water, the line must be held up from its first buoyant part down to its lowest float.
-
-    Parameters
-    ----------
-    lift : result of `standing_lift`
 
     Raises
     ------
@@ -342,13 +340,14 @@ def refuse_unsupported(line: Line, water: Water, lift: Floats) -> None:
         ``slack`` if the line folds; ``no-equilibrium`` if it has too little buoyancy.
     """
     blown = line.floating is not None and line.floating.blown
+    lift = standing_lift(line, water)
     support, piece, lacking = support_of(lift, not (water.moving or blown))
     if support == TOO_HEAVY:
         raise too_heavy(lift)
     if support == FOLDS:
         raise Status.SLACK.because(
-            f"In still water the line is slack below {{piece}}: {lacking:.0f} N of "
-            "buoyancy are missing to support the part above.",
+            f"In still water, the line is slack below {{piece}}: the part above needs another "
+            f"{lacking:.0f} N of buoyancy.",
             piece,
         )
 
@@ -363,5 +362,5 @@ def too_heavy(lift: Floats) -> NoEquilibrium:
     up, down = float(lift[lift > 0.0].sum()), float(-lift[lift < 0.0].sum())
     return Status.NO_EQUILIBRIUM.because(
         f"There is too little buoyancy to hold the line up: the net buoyancy of the buoyant pieces "
-        f"is {up:.0f} N, the weight of the other pieces in water is {down:.0f} N."
+        f"is {up:.0f} N, but the weight of the other pieces in water is {down:.0f} N."
     )

@@ -11,7 +11,7 @@ from calm.physics.profile import Sea
 from calm.physics.track import CABLE, Course
 from calm.solve.closing import Root, coarse_miss, whole_line, with_sought
 from calm.solve.locate import growth_below, in_even_current, locate, turns_back
-from calm.solve.problem import BELOW, FASTEST, STARTS, LineProblem, Search
+from calm.solve.problem import BELOW, FASTEST, STARTS, LineProblem
 from calm.solve.solution import FOUND
 
 IMMERSION_SHARE = 0.97
@@ -30,7 +30,7 @@ LEAST_CURRENT_GROWTH = 0.25
 """Growth of the current over the largest knockdown of a line above which this test is made."""
 
 
-def fill_starts(search: Search) -> int:
+def fill_starts(problem: LineProblem) -> int:
     """Solve a line in uniform currents, and return the number of solutions found.
 
     The solutions are written to the seven rows of `LineProblem.starts`: three rows for a line clear
@@ -39,7 +39,7 @@ def fill_starts(search: Search) -> int:
     knockdown [m]. A root of at least 0 is the depth of the free end [m]; a negative root is the
     used fraction of buoyancy minus one.
     """
-    problem, found = search.problem, 0
+    found = 0
     limits, starts = problem.limits, problem.starts
     for kind in range(2):
         lands = kind == 1
@@ -47,12 +47,12 @@ def fill_starts(search: Search) -> int:
         upright = max(-limits.standing - unknown.goal, 0.0)
         for k in range(STARTS):
             speed = FASTEST * max(k, 1e-3) / (STARTS - 1)
-            evenly = Search(search.miss, in_even_current(problem, speed, 0.0, 0.0))
+            evenly = in_even_current(problem, speed, 0.0, 0.0)
             fall = coarse_miss(evenly, unknown, upright)
             starts[3 * kind + 2][k] = limits.depth if isnan(fall) else max(fall, limits.allowed)
             starts[3 * kind][k] = starts[3 * kind + 1][k] = nan
             starts[LEAN_ROW][k] = lean_of(
-                problem.course, evenly.problem.sea, upright, limits.depth, upright > 0.0
+                problem.course, evenly.sea, upright, limits.depth, upright > 0.0
             )
             if limits.lift <= 0.0 and not lands:
                 continue
@@ -66,12 +66,12 @@ def fill_starts(search: Search) -> int:
     return found
 
 
-def start_of(search: Search, lands: bool) -> Root:
+def start_of(problem: LineProblem, lands: bool) -> Root:
     """Return the approximate root from which a search starts.
 
     The root is not `found` if the line needs the complete search.
     """
-    problem, limits = search.problem, search.problem.limits
+    limits = problem.limits
     unknown = whole_line(problem, lands)
     nowhere = Root(False, unknown, nan, nan, nan)
     if len(problem.starts[0]) == 0 or limits.at_rest:
@@ -168,8 +168,8 @@ def lean_of(course: Course, sea: Sea, top: float, depth: float, taut: bool) -> f
     Parameters
     ----------
     top, depth : depth of the top of the line, and water depth [m]
-    taut : whether all the buoyancy is in use; otherwise the result is for the drag on the cables
-        alone, and correct only up to a constant factor
+    taut : whether all the buoyancy is in use; otherwise only the drag on the cables is included,
+        and the result is correct only up to a constant factor
     """
     length = 0.0
     for i in range(len(course.stages)):

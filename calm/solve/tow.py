@@ -54,7 +54,7 @@ NARROW_JUMP, AT_THE_JUMP = 1e-9, 1e-6
 fractions of the paid-out length.
 """
 PAY_OUT = "Pay out more line."
-RIDE_CLEAR = "Pay out or take in some line, so that it is clear of the surface."
+RIDE_CLEAR = "Pay out or take in some line, so that no rigid piece or clamp is at the surface."
 AT_SURFACE = "The towed line reaches the surface behind the ship."
 STAY_BELOW = "Add weight or a depressor, or reduce the towing speed."
 
@@ -95,9 +95,9 @@ def solve_tow(
     -------
     Solution : the line is listed from its free end, so that piece 0 of the solution is the last
         piece of `line`; x and y are relative to the tow point. If there are several equilibria, the
-        result is the deepest, which an accelerating ship reaches first. At an angle step of 1°,
-        errors of positions are at most 5e-5 of the paid-out length, and relative errors of tensions
-        are at most 2e-4.
+        result is the deepest equilibrium, which an accelerating ship reaches first. At an angle
+        step of 1°, errors of positions are at most 5e-5 of the paid-out length, and relative errors
+        of tensions are at most 2e-4.
 
     Raises
     ------
@@ -337,14 +337,14 @@ def _half_out(net: NetSearch, depth: float, lacking: bool) -> NoEquilibrium | No
         body = bodies[np.argmin(off)]
         what = "{piece}" if shape.clamp[body] < 0 else "a clamp on {piece}"
         why = (
-            f"the line's upper end would be {above:.2g} m above the tow point or {-below:.2g} m "
-            "below it"
+            f"the upper end of the line would be {above:.2g} m above or {-below:.2g} m below the "
+            "tow point"
         )
         if lacking:
-            why = "in neither state does its strumming match the vortex shedding at the ship"
+            why = "the strumming frequency of the line converges in neither state"
         return Status.NO_EQUILIBRIUM.because(
-            f"No equilibrium has {what} fully in water or fully in air: {why}. It would be partly "
-            "out of the water, a state that CALM does not solve.",
+            f"There is no equilibrium with {what} fully in water or fully in air: {why}. CALM does "
+            f"not solve an equilibrium with {what} partly out of the water.",
             int(shape.piece[body]),
             RIDE_CLEAR,
         )

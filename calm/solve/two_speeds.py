@@ -1,28 +1,23 @@
 """Choice between the interpreted solver and the solver compiled by LLVM.
 
 Both give the same digits. Compiled code is loaded from the cache as soon as this saves time. If the
-cache has none, a child process compiles the solver as soon as compilation pays. Meanwhile this
-process continues with the interpreted solver, and switches when the child has finished.
+cache has none, the solver is compiled, which takes less than a second, as soon as this saves time.
 `CALM_COMPILED=never` and `always`, and the attribute `compiled` of `Settings`, override this
-choice. With `always`, this process compiles the solver itself.
+choice.
 """
 
 import os
-import sys
 from enum import Enum
 from functools import cache
 from importlib.util import find_spec
-from multiprocessing import parent_process
-from pathlib import Path
-from subprocess import DEVNULL, Popen
 
-from calm.physics.compiled import cache_folder, fault, is_cached
+from calm.physics.compiled import fault, is_cached
 from calm.physics.line import Line
 from calm.solve.solution import Settings
 
 LOAD_FROM = 40
 """Number of lines above which it pays to load compiled code from the cache."""
-COMPILE_FROM = 400
+COMPILE_FROM = 250
 """Number of lines, announced by `expect_many`, above which it pays to compile."""
 UNANNOUNCED = 100
 """Number of unannounced lines above which many more are expected."""
@@ -34,7 +29,8 @@ TYPICAL_PARTS = 8
 class CompiledPart(Enum):
     """A part of the solver that is compiled separately.
 
-    The value of a member is the name of the function of this part that is compiled last.
+    The value of a member is the name of a function. Of all functions in this part of the solver,
+    this function is compiled last.
     """
 
     LINE = "run_search"
@@ -52,32 +48,24 @@ class _Pace:
         self.solver = solver
         self.announced = self.solved = self.work = self.checked_at = 0.0
         self.compiled = False
-        self.child: Popen[bytes] | None = None
 
     def consider(self) -> None:
-        """Switch to compiled code if it is ready, or start to compile it if that pays."""
+        """Switch to compiled code if that pays."""
         if self.compiled:
             return
-        if self.child is not None:
-            # a worker process cannot wait for the child of its parent, and `poll` returns 0 there
-            of_worker = parent_process() is not None
-            self.compiled = is_cached(self.solver.value) if of_worker else self.child.poll() == 0
-            return
         work = max(self.announced, self.work)
-        if work >= max(LOAD_FROM, 2.0 * self.checked_at):
+        if self.announced >= COMPILE_FROM or self.solved - self.announced >= UNANNOUNCED:
+            self.compiled = fault() is None
+        elif work >= max(LOAD_FROM, 2.0 * self.checked_at):
             self.checked_at = work
             self.compiled = is_cached(self.solver.value)
-        if self.compiled or parent_process() is not None:
-            return
-        if self.announced >= COMPILE_FROM or self.solved - self.announced >= UNANNOUNCED:
-            self.child = _compile_ahead(self.solver)
 
 
 _paces = {solver: _Pace(solver) for solver in CompiledPart}
 
 
 def expect_many(lines: float, solver: CompiledPart = CompiledPart.LINE) -> None:
-    """Announce a number of lines to be solved, so that compilation can start if it pays."""
+    """Announce a number of lines to be solved, so that they are solved compiled if this pays."""
     pace = _paces[solver]
     pace.announced = pace.solved + lines
     if _may_choose():
@@ -99,7 +87,7 @@ def runs_compiled(
 
 
 def count_lines(lines: float, solver: CompiledPart, work: float | None = None) -> None:
-    """Count lines that are about to be solved, which may start compilation of the solver.
+    """Count lines that are about to be solved; from a certain number on, the solver is compiled.
 
     Parameters
     ----------
@@ -125,25 +113,3 @@ def _may_choose() -> bool:
 @cache
 def _has_llvm() -> bool:
     return find_spec("llvmlite") is not None
-
-
-def _compile_ahead(solver: CompiledPart) -> "Popen[bytes] | None":
-    """Start a child process that compiles a part of the solver into the cache.
-
-    The child process may outlive this process, so the two share no stream.
-    """
-    if cache_folder() is None or fault() is not None or not sys.executable:
-        return None
-    package = str(Path(__file__).parents[2])
-    path = os.pathsep.join(filter(None, [package, os.environ.get("PYTHONPATH")]))
-    try:
-        return Popen(
-            [sys.executable, "-m", "calm.solve.compile_ahead", solver.name],
-            stdin=DEVNULL,
-            stdout=DEVNULL,
-            stderr=DEVNULL,
-            start_new_session=True,
-            env={**os.environ, "CALM_COMPILED": "always", "PYTHONPATH": path},
-        )
-    except OSError:
-        return None

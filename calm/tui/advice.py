@@ -141,7 +141,7 @@ def _anchors(view: View, catalogue: Catalogue, catalogs: Sequence[str | Path]) -
     """Suggest the lightest anchor that holds in every environment and situation.
 
     It is taken from the catalogue. For an anchor that the catalogue of CALM does not define, a
-    weight is suggested, too.
+    weight is also suggested.
     """
     loads = view.held or held_lines(view, catalogs)
     if view.file is None or not loads:
@@ -280,4 +280,4 @@ def differences(before: View, after: View) -> list[str]:
         counts = [sum(each.state is state for each in view.findings) for view in (before, after)]
         if counts[0] != counts[1]:
             effects.append(f"{word} {counts[0]} → {counts[1]}")
-    return effects or ["none of the displayed values changes"]
+    return effects or ["no displayed value changes"]

@@ -38,14 +38,14 @@ class BuildApp(App[int]):
     """The line builder.
 
     Keys, pastes and mouse presses are handled one after the other, so that a screen opened by a key
-    is open before the next key is handled. Otherwise keys typed ahead, or arriving together over a
-    slow connection, would go to the widget that has the focus on arrival, such as the line instead
-    of the field that the first key opens.
+    is open before the next key is handled. Otherwise, keys that are typed ahead, or that arrive
+    together over a slow connection, would go to the widget that has the focus on their arrival. For
+    example, they would go to the line instead of the field that the first key opens.
 
     A key counts as handled once all message queues that it may have filled are empty. Each widget
-    handles messages in the order of its queue, so a call that is posted after the key is made once
-    the key is handled. A second round waits for messages that the widgets sent to each other.
-    Rounds are repeated until all queues are empty.
+    handles messages in the order of its queue. A call that is posted after a key therefore runs
+    only when the widget has handled the key. A second round waits for messages that the widgets
+    sent to each other. Rounds are repeated until all queues are empty.
 
     Parameters
     ----------
@@ -254,7 +254,7 @@ class BuildApp(App[int]):
             self.saving.save_as()
 
     async def action_quit(self) -> None:
-        """Quit; prompts for unsaved changes."""
+        """Quit, after asking what to do with unsaved changes."""
         if self.is_settled():
             self.saving.quit()
 

@@ -86,7 +86,7 @@ class BuilderScreen(ComparingScreen):
         """Show the line in the next environment of the file."""
         standing = self.session.standing
         if len(standing.environments) == 1:
-            self.tell("The file has one environment; add others on the screen of the water (w)")
+            self.tell("The file has one environment; add others on the water screen (w)")
             return
         standing.environment = name = standing.next_environment
         self.show_draft()
@@ -161,7 +161,8 @@ class BuilderScreen(ComparingScreen):
             (f"before: {label}", partial(undo, number))
             for number, label in enumerate(steps.steps[:_MOST_STEPS], 1)
         )
-        text = f"Go back to the state before one of the last {len(answers)} changes; U redoes them."
+        text = f"Go back to the state before one of the last {len(answers)} changes."
+        text += " U redoes changes that you undo."
         if (more := len(steps.steps) - _MOST_STEPS) > 0:
             text += f" {more} changes are older; u undoes them one at a time."
         choose(self.app, Question("Changes", text, answers))

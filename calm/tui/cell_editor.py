@@ -222,7 +222,7 @@ class CellEditor(field.ScrolledEntry):
         self.call_after_refresh(self._end_if_left)
 
     def _end_if_left(self) -> None:
-        """Finish editing, unless another value is edited now or the window has lost the focus."""
+        """Finish editing, unless another value is being edited or the window has lost the focus."""
         if not self.is_open or self.is_here or not self.app.app_focus:
             return
         reading = self._check(self.value)

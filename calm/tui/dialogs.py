@@ -211,7 +211,7 @@ class Form(Screen[T | None]):
 
 _BELOW = 7
 """Number of lines on a sheet that are not fields: margins, a two-line note, the keys."""
-_TABLE_KEYS = "a adds a row, Enter edits a value, Del deletes the row, ↑ ↓ go on"
+_TABLE_KEYS = "a adds a row, Enter edits a value, Del deletes the row, ↑ ↓ move"
 
 
 class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):

@@ -20,7 +20,7 @@ from calm.tui.names import Named, references_to
 from calm.tui.verdict_text import VerdictLine, why
 from calm.tui.workspace import Workspace
 
-_MIXED = "Pieces and clamps of other pieces are both marked; mark only pieces or only clamps"
+_MIXED = "Pieces and clamps on other pieces are both marked; mark only pieces or only clamps"
 _FROM_A_ROW = frozenset(
     {"mark", "why", "equipment", "column", "repeat", "duplicate", "delete",
      "move_piece", "cut"}
@@ -216,7 +216,7 @@ class LinePane(LineSearch):
             answers = [
                 Answer("o", "the original only", duplicate),
                 Answer(
-                    "b", "both; accepted findings then name `NAME *`", partial(duplicate, named)
+                    "b", "both; accepted findings will refer to `NAME *`", partial(duplicate, named)
                 ),
             ]
             choose(self.app, Question("Which pieces should these keys refer to?", text, answers))

@@ -30,8 +30,8 @@ texts.
 """
 
 _BEGIN_A_TOW = (
-    "The line becomes a tow: suspended from a ship, listed from the ship down, without an "
-    "anchor. Undo restores the mooring."
+    "The line becomes a tow: it hangs from a ship, has no anchor, and is listed from the ship "
+    "down. Undo restores the mooring."
 )
 _COMPARED = "calm diff compares these entries with the design."
 RELEASES: Location = ("releases",)

@@ -194,7 +194,7 @@ class Saving:
             go_on()
 
         whose = "" if keeper.is_here else f" on {keeper.host}, where the file may still be open"
-        text = f"An earlier run ended before {session.name} was saved. Its work was stored "
+        text = f"An earlier run ended before {session.name} was saved. Unsaved work was stored "
         text += f"{moment(kept.at)}{whose}."
         if session.file.is_of_another(kept):
             stamp = session.file.stamp

@@ -43,8 +43,8 @@ from calm.tui.water_tables import (
 from calm.tui.workspace import Workspace, problem_text
 
 _ELSEWHERE = (
-    "The line is solved in {0}, so profile and verdict are for {0}. Below is the default "
-    "environment; the values of {0} override it."
+    "The line is solved in {0}, so profile and verdict are for {0}. The values below are those of "
+    "the default environment; {0} overrides some of them."
 )
 _INHERITED = "as in the default environment"
 _FORMS: dict[type[Widget], str] = {FormChoice: "", Field: "constant", ProfileGrid: "table"}
@@ -267,7 +267,7 @@ class WaterScreen(screen.DraftScreen):
         if copied.headings is None:
             text += " The pasted table has no headings: check the columns below."
         first = "   ".join(copied.rows[0])
-        text += f" The first pasted row is  {first}"
+        text += f" First pasted row:  {first}"
         form_field = FormField("columns", "Columns", ", ".join(headings), check)
         dialogs.enter(self.app, "Paste a table", text, [form_field], take)
 

@@ -36,11 +36,11 @@ _POWER = 1 / 7
 
 PRESETS: Mapping[str, Callable[[float], float]] = {
     "uniform, 0.5 m/s": lambda share: 0.5,
-    "tidal stream, 1 m/s at the surface, by the 1/7-power law of height above the seabed":
+    "tidal stream, 1 m/s at the surface, 1/7-power law of the height above the seabed":
         lambda share: (1.0 - share) ** _POWER,
-    "linear shear, 0.8 m/s at the surface to zero at the seabed":
+    "linear shear, from 0.8 m/s at the surface to zero at the seabed":
         lambda share: 0.8 * (1.0 - share),
-    "boundary current, 1.2 m/s at the surface, decaying by a factor of e over a fifth of the depth":
+    "boundary current, 1.2 m/s at the surface, exponential decay over a fifth of the depth":
         lambda share: 0.05 + 1.15 * exp(-share / 0.2),
 }  # fmt: skip
 """Typical current profiles: speed [m/s] by relative depth, from 0 at the surface to 1 at the
@@ -60,8 +60,8 @@ def import_sheet(folder: Path) -> InputSheet:
     """
     return InputSheet(
         "A current from a file",
-        f"CSV or CF NetCDF, relative to {folder}. `refer` keeps the file's "
-        "name in the mooring file; `copy` writes its profile as a table.",
+        f"CSV or CF NetCDF, relative to {folder}. `refer` writes the name of this file into the "
+        "mooring file; `copy` writes its current profile as a table.",
         [
             forms.FormField("file", "File", check=_existing(folder), placeholder="e.g. adcp.nc"),
             forms.FormField(

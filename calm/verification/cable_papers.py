@@ -254,7 +254,7 @@ def _amplitude(speed: float) -> float:
 
 
 _FITTED = (
-    "One unit of the last digit: A₁, B₁ and C₁ are fitted to these figures and given to six digits."
+    "One unit of the last digit: A₁, B₁ and C₁ are fitted values, which are given to six digits."
 )
 
 BOURGET_MARICHAL = Source(

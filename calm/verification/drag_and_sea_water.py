@@ -242,7 +242,8 @@ CALM_PAPER = Source(
     """The paper on the original CALM has a table of dynamic viscosities, in mPl, which is mPa s. It
 also has the drag of an Aanderaa RCM4/RCM5 at five speeds, with the rule K = Σ(F/V) / ΣV, by which
 CALM derives a drag from such measurements. The paper gives K as 2.694 N. The manufacturer's forces
-are in kilograms-force, as the drag of a plate of that size confirms, so K is 26.4 N/(m/s)².""",
+are in kilograms-force, as the drag of a plate as large as the meter confirms, so K is 26.4
+N/(m/s)².""",
     (
         *(
             Case(f"viscosity, {temperature} °C, {salinity} g/kg", printed, "mPa s",

@@ -236,10 +236,10 @@ def _nothing(name: str, tolerance: float, why: str, got: Callable[[], float]) ->
 
 
 _SAME = (
-    "Both solutions have the same segments: the tolerance covers rounding, and 1e-9 of the depth, "
-    "at which each search for a root stops."
+    "Both solutions have the same segments. The tolerance covers rounding, and the 1e-9 of the "
+    "depth at which each root search stops."
 )
-_RODS = "The error of straight segments: 1 − cos of half an angle step, 4e-7 at 0.1°."
+_RODS = "The error of straight segments: 1 − cos(half an angle step), 4e-7 at 0.1°."
 
 INVARIANTS = Source(
     "Invariants",
@@ -260,7 +260,7 @@ gives the highest and reports the deepest; the equilibrium between them is unsta
         _nothing("current mirrored: the line is mirrored", 1e-8, _SAME,
                  lambda: _mirrored(1.0, -1.0)),
         _nothing("seabed and axes moved by 100 m: the line follows", 4e-6,
-                 "Each shape has its own segments, and an error of 2e-6 at 0.1°.",
+                 "The shapes have different segments; each has an error of 2e-6 at 0.1°.",
                  _deeper),
         _nothing("lengths × 3, forces × 0.2, speeds × 1.7: similar", 1e-8, _SAME,
                  lambda: _similar(3.0, 0.2, 1.7)),
@@ -325,7 +325,7 @@ reports are extrapolated from two such shapes and have much smaller errors.""",
     (
         *(
             Case(f"C20 order, {coarse:g}° to {fine:g}°", 2.0, "", 0.05,
-                 "Disturbed by terms of fourth order and by the shorter last segment.",
+                 "Fourth-order terms and the shorter last segment disturb the order.",
                  partial(_order, coarse, fine), Kind.PROPERTY)
             for coarse, fine in ((2.0, 1.0), (1.0, 0.5), (0.5, 0.25))
         ),

@@ -20,7 +20,7 @@ from calm.solve import Settings, Solution, Towing, solve_mooring, solve_tow
 
 Solved = TypeVar("Solved")
 
-PRINTED = "Half a unit of the last printed digit, plus 10 % of that."
+PRINTED = "Half a unit of the last printed digit, with a margin of 10 %."
 """Reason for the tolerance of a printed value that CALM computes to more digits."""
 
 

@@ -87,11 +87,11 @@ a second independent integration.""",
         *table(
             _figures(1e-4, 1e-3),
             [("S1000 at 0.02°", lambda: solved_s1000(_FINEST), _EXPECTED)],
-            "One unit of the last digit printed: half for its rounding, half for the march.",
+            "One unit of the last printed digit: half a unit for rounding, half for the march.",
             Kind.INDEPENDENT),
         Case("S1000 order of convergence of the march, 2° to 0.5°", 2.0, "", 0.25,
-             "Second order, disturbed by the cuts at the profile's levels, which shift the "
-             "segments.",
+             "The march is of second order; segments are also cut at the levels of the profile, "
+             "which disturbs the order.",
              lambda: _order(2.0, 0.5), Kind.PROPERTY),
     ),
     picture="verification-s1000",
@@ -201,8 +201,8 @@ sphere, below the third meter and at the anchor [kgf].
 """
 
 _PROGRAM = (
-    "1 m for heights and 2 % for tensions: the two programs have errors of 1 to 4 % and differ "
-    "from each other as much."
+    "1 m for heights and 2 % for tensions: the two programs have errors of 1 to 4 %, and differ "
+    "from each other by as much."
 )
 _RANGE = "The range of the programs, plus half a unit of their last digit."
 
@@ -244,8 +244,8 @@ tension.""",
         *table(
             [replace(_HEIGHT, tolerance=0.1), _OFFSET, *_tensions(0.002)],
             [("C16 independent solution", solved_cdms_1, PROGRAMS["independent"])],
-            "Heights 0.1 m, offset 0.2 m, tensions 0.2 %: the printed data define the mooring no "
-            "better.", Kind.INDEPENDENT),
+            "Heights 0.1 m, offset 0.2 m, tensions 0.2 %: the accuracy with which the printed data "
+            "define the mooring.", Kind.INDEPENDENT),
         *(
             Case(f"C16 independent solution: {name}", kgf, "kgf", 0.002 * kgf,
                  "0.2 %, the accuracy of the printed data of the mooring.", got,
@@ -256,10 +256,10 @@ tension.""",
             )
         ),
         Case("C16 printed: height of the first glass ball", 12.03, "m", 0.01,
-             "Printed to the centimetre; the line below it is almost vertical.",
+             "Printed to the centimetre; the line below the ball is almost vertical.",
              lambda: _centre(_FIRST_GLASS, solved_cdms_1())[1], Kind.PUBLISHED),
         Case("C16 printed: 98 m of Kevlar under load", 98.24, "m", 0.011,
-             "Printed to the centimetre, plus 2 % of the stretch for its tension.",
+             "Printed to the centimetre, plus 2 % of the stretch for the error of the tension.",
              lambda: _stretched(_FIRST_KEVLAR, solved_cdms_1()), Kind.PUBLISHED),
     ),
     picture="verification-cdms-1",

@@ -41,7 +41,7 @@ from calm.verification.published_case import (
 )
 
 _MARCH = (
-    "1e-6 of the line's length or of the load. The float has the printed forces; the error of "
+    "1e-6 of the line's length or of the load. The printed forces act on the float; the error of "
     "the march is smaller at an angle step of 0.1°."
 )
 
@@ -121,11 +121,11 @@ _LANDED = (
 CATENARIES = Source(
     "Catenaries",
     """These cases are elastic catenaries (M. Irvine, *Cable Structures*, 1981). C12 has ends 400 m
-apart, one 300 m above the other, 50 N/m and EA 5 MN, with an unstretched length of 520 m and of 490
-m. C13 is a line that reaches a frictionless seabed, the public example of the Python package
-*pycatenary*: ends 5.3 m apart, one 2.65 m above the other, 6.98 m of line, 1.036 N/m, EA 560 kN.
-C14 is a level span of 300 m with 330 m of inextensible line of 20 N/m. The expected values are
-roots of the closed forms with residuals below 1e-12. They are compared with
+apart, one 300 m above the other, 50 N/m and EA 5 MN, with an unstretched length of 520 m
+(suspended) or 490 m (taut). C13 is a line that reaches a frictionless seabed, the public example of
+the Python package *pycatenary*: ends 5.3 m apart, one 2.65 m above the other, 6.98 m of line, 1.036
+N/m, EA 560 kN. C14 is a level span of 300 m with 330 m of inextensible line of 20 N/m. The expected
+values are roots of the closed forms with residuals below 1e-12. They are compared with
 `calm.analytic.catenary` and, if the line can be moored, with the march.""",
     (
         *table(
@@ -174,8 +174,8 @@ roots of the closed forms with residuals below 1e-12. They are compared with
 _LENGTH, _WEIGHT, _LOAD, _STIFFNESS = 1000.0, 0.3, 2000.0, 97_817.4
 
 _WHY = (
-    "Half a unit of the last printed digit, plus 10 % of that. Tension falls linearly along a "
-    "hanging rope, so the stretch of a segment at its mean tension is exact for any angle step."
+    f"{PRINTED} Tension falls linearly along a hanging rope, so the stretch of a segment at its "
+    "mean tension is exact for any angle step."
 )
 
 
@@ -242,7 +242,7 @@ _DROPPED = FallingAnchor(weight=8896.0, drag=sphere_drag(0.81, 1.0))
 
 _INERTIA = (
     "3 % of a time or a tension, 8 % of the fall-back: the error that neglecting inertia may "
-    "cause. The same program without inertia differs from it by 0.4 and 1.1 %."
+    "cause. Without inertia, the results of the other program change by 0.4 and 1.1 %."
 )
 
 
@@ -310,7 +310,7 @@ _PLUMB = sqrt(
 )
 """Terminal speed of the vertical line in closed form, √(net weight/sum of the drags) [m/s]."""
 _ALONE = sqrt(10_000.0 / (100.0 * _DENSITY / REFERENCE_DENSITY))
-_THREAD = "The drag of the thread and the cork, and the last bend of the line."
+_THREAD = "The drag of the thread and the cork, and the bend that remains in the line."
 
 ANCHOR_DROP = Source(
     "Anchor drop",

@@ -40,7 +40,7 @@ _FLOAT = point(4905.0, sphere_drag(1.0, 0.65))
 _LENGTH = 1000.0
 _HEAVY = 2.0
 
-_PRINTED = "Half a unit of the last printed digit, plus 10 % of that. One straight rod is exact."
+_PRINTED = f"{PRINTED} One straight rod is exact."
 _SEVEN_DIGITS = (
     "1e-6 of the line's length or of the tension, 6e-5° for an angle. The expected values have "
     "seven digits; the error of the march is 4e-8 at an angle step of 0.1°."
@@ -91,7 +91,7 @@ def _fall(speed: float) -> float:
 def _identity(speed: float) -> Case:
     return Case(
         f"C4 heavy line, {speed} m/s: (T_top − T_bottom) / (w z_top)", 1.0, "", 1e-6,
-        "Exact; the error of straight segments is 1 − cos of half an angle step, 4e-7 at 0.1°.",
+        "Exact; the error of straight segments is 1 − cos(half an angle step), 4e-7 at 0.1°.",
         lambda: _fall(speed) / (_HEAVY * _rope_ends(_HEAVY, 0.0, speed).z), Kind.PROPERTY,
     )  # fmt: skip
 
@@ -209,18 +209,17 @@ TOWED_CABLES = Source(
     "Towed cables",
     """A bare towed cable of 10 mm, 2.5 N/m and Cn 1.5 (C7) is straight at the critical angle, cos
 φc = √(1 + p²/4) − p/2, where p is its weight divided by its drag perpendicular to the stream. In
-C8, 300 m of this cable tow a body of 2000 N in water and 0.05 m² of drag area, with a friction of
-½ρ 0.02 D V² cos² φ along the cable. The expected values of C8 are quadratures of the differential
-equations, with a relative error of 1e-10, evaluated without CALM. The march has an angle step of
-0.1° in C8.""",
+C8, 300 m of this cable tow a body that weighs 2000 N in water and has a drag area of 0.05 m². The
+friction along the cable is ½ρ 0.02 D V² cos² φ. The expected values of C8 are quadratures of the
+differential equations, with a relative error of 1e-10, evaluated without CALM. The march has an
+angle step of 0.1° in C8.""",
     (
         *table(
             [CaseColumn[Wake](_AT_THE_SHIP, "°", 5.5e-5, lambda wake: wake.angle)],
             _by_speed("C7 bare cable", _bare, (
                 (1.0, 31.7304), (2.0, 16.2243), (3.0, 10.8582), (5.0, 6.5277),
             )),
-            "Half a unit of the last printed digit, plus 10 % of that. A straight cable is exact "
-            "at any angle step.", Kind.CLOSED_FORM),
+            f"{PRINTED} A straight cable is exact at any angle step.", Kind.CLOSED_FORM),
         *table(
             [
                 CaseColumn[Wake]("tension at the ship", "N", 1e-6, lambda wake: wake.tension, True),
@@ -319,12 +318,12 @@ def _critical_angle(ratio: float) -> float:
 PODE = Source(
     "Pode's cable functions",
     """L. Pode (David Taylor Model Basin reports 687 and 717, 1951) tabulated τ, σ, ξ and η,
-functions of a heavy cable in a uniform stream with a constant friction F = f R along it (C6). The
-expected values, between φ and 90°, are quadratures of his integrals to 1e-10, not copies of his
-tables. They are compared with `calm.analytic.uniform` and with τ − 1 = p η + f σ. The functions
-with friction are also compared with the march of a towed body, and the tensions without friction
-with their closed form. E. E. Zajac (Bell System Technical Journal 36, 1957) also gives the critical
-angle, cos φc = √(1 + p²/4) − p/2.""",
+functions of a heavy cable in a uniform stream, with a constant friction F = f R along the cable
+(C6). The expected values, between φ and 90°, are quadratures of his integrals to 1e-10, not copies
+of his tables. They are compared with `calm.analytic.uniform` and with τ − 1 = p η + f σ. Cases with
+friction are also compared with the march of a towed body. Cases without friction are also compared
+with the closed form of the tension. E. E. Zajac (Bell System Technical Journal 36, 1957) also gives
+the critical angle, cos φc = √(1 + p²/4) − p/2.""",
     (
         *table(
             [
@@ -347,8 +346,8 @@ angle, cos φc = √(1 + p²/4) − p/2.""",
             [(_name(critical, f, angle), partial(_march, critical, f, sigma),
               (angle, tau, xi, eta))
              for critical, f, angle, tau, sigma, xi, eta in _TABLE if f > 0.0],
-            "5e-7 for the printed length σ of the cable, and 1e-7 of this length for the march, "
-            "about 1e-6, at an angle step of 0.1°.", Kind.INDEPENDENT),
+            "5e-7 for the rounding of the printed cable length σ, and about 1e-6 for the march: "
+            "1e-7 of this length at an angle step of 0.1°.", Kind.INDEPENDENT),
         *(_tension(critical, angle, tau) for critical, f, angle, tau, *_ in _TABLE if f == 0.0),
         Case("C6 all rows: maximum |τ − 1 − p η − f σ|", 0.0, "", 1e-11,
              "Exact; the quadratures have an error of 1e-12.", _identity_missed, Kind.PROPERTY),

@@ -326,8 +326,8 @@ def buoy_of(leg: Leg, solution: Solution, follows: bool) -> Buoy | None:
         if righted <= 0.0:
             raise UsageError(
                 f"{piece.label} does not float upright: its `centre_of_mass` is {centre:g} m above "
-                f"the keel, its draft {draft:.2f} m; a moment of {-righted:.0f} N m per radian "
-                "capsizes it"
+                f"the keel, its draft is {draft:.2f} m, and its righting moment is "
+                f"{righted:.0f} N m per radian"
             )
     return buoy
 

@@ -16,7 +16,7 @@ def test_the_table_gives_all_seven_quantities_of_every_cable(calm):
     rows = dict(line.rsplit("  ", 1)[0].split("  ", 1) for line in done.out.splitlines()[4:11])
     assert "28.467" in done.out and "18.782" in done.out and "22.027" in done.out
     assert "63.298" in done.out and "-18.924" in done.out
-    assert "the cable dips below that end" in done.out
+    assert "the cable dips below this end" in done.out
     assert len(rows) == 7
 
 

@@ -51,7 +51,7 @@ def test_a_file_that_defines_other_components_takes_all_entries(calm, folder):
     (folder / "own.yaml").write_text(CATALOGUE + OWN.replace("  link", "link"), encoding="utf-8")
     (folder / "m.yaml").write_text(f"{LINE}components:\n{SPACER}", encoding="utf-8")
     done = calm("check", "m.yaml", "--catalog", "own.yaml", "--missing")
-    assert "# Copy these entries to below `components:`, line 15 of m.yaml.\n" in done.out
+    assert "# Copy these entries into the section `components:`, line 15 of m.yaml.\n" in done.out
 
 
 def test_the_block_names_each_component_once_with_its_keys_and_estimate(calm, unknowns):
@@ -60,7 +60,7 @@ def test_the_block_names_each_component_once_with_its_keys_and_estimate(calm, un
     block = yaml.safe_load(done.out)
     assert block["sbe56-uwa"] == {"depth_rating": None}
     assert block["link"] == {"working_load": None}
-    assert "Copy the other entries to below `components:`, line 15 of m.yaml.\n" in done.out
+    assert "Copy the other entries into the section `components:`, line 15 of m.yaml.\n" in done.out
     assert "  sbe56-uwa:  # sbe56-uwa 1 and 2\n" in done.out
     assert "  link:  # link 1 and 2; defined in line 16 of m.yaml\n" in done.out
     assert (

@@ -513,7 +513,7 @@ legs:
 """)
     assert run("run", file) == 3
     told = capsys.readouterr().err
-    assert "above-surface: Parts other than the float at the upper end of marker buoy" in told
+    assert "above-surface: Besides marker buoy (piece 1), other parts of the leg would" in told
 
 
 SLOPE = """\

@@ -73,9 +73,9 @@ def test_the_band_measured_at_sea_and_other_cut_offs(calm, buoy):
     assert band == {"low": 0.57, "high": 1.0, "from_height": 1.0, "to_height": 5.0}
     words = " ".join(text.split())
     assert "in seas of Hs 1 to 5 m" in words
-    assert "0.57 to 1.00 times the computed one" in words
+    assert "0.57 to 1.00 times the computed standard deviation" in words
     low, high = (top[end]["tension_std"] for end in ("measured_low", "measured_high"))
-    assert f"For this mooring that means {low:.0f} N to {high:.0f} N at the top" in words
+    assert f"a standard deviation of {low:.0f} N to {high:.0f} N at the top" in words
     assert "outside that range" not in words
     for name, factor in (("half", 0.5), ("as above", 1.0), ("twice", 2.0)):
         (row,) = [line for line in text.splitlines() if line.startswith(f"{name} ")]

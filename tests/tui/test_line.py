@@ -342,7 +342,7 @@ def test_pieces_with_clamps_of_others_are_not_copied_nor_moved(drive, small, key
         before = driver.text
         await driver.press("c", "down", "down", "down", "space", "down", "space", key)
         assert driver.text == before
-        assert "Pieces and clamps of other pieces are both marked" in driver.screen
+        assert "Pieces and clamps on other pieces are both marked" in driver.screen
         assert len(driver.table.marked) == 2
         await driver.press("delete")
         assert driver.uses == ["ball", "rope", "  logger", "weight"]

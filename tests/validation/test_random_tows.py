@@ -67,8 +67,8 @@ def test_calm_agrees_with_the_referee(block) -> None:
         (997, "no-equilibrium", "has neither weight nor tangential drag"),
         (2942, "no-equilibrium", "It would be partly out of the water"),
         (4555, "no-equilibrium", "It would be partly out of the water"),
-        (652, "no-equilibrium", "has piece 12 fully in water"),
-        (2079, "no-equilibrium", "has piece 9 fully in water"),
+        (652, "no-equilibrium", "with piece 12 fully in water"),
+        (2079, "no-equilibrium", "with piece 9 fully in water"),
     ],
 )
 def test_a_tow_without_a_shape_is_refused_by_its_reason(number, status, why) -> None:

@@ -42,8 +42,8 @@ class CountedLimit:
     leg : leg to which the criterion applies; values missing from the catalogue are replaced by the
         lower bounds of their estimates
     seats : column numbers of the leg in the batch result, if there are several legs
-    on_estimate : whether the limit is the lower bound of an estimate; exceeding such a limit is not
-        certain to be a failure
+    on_estimate : whether the limit is the lower bound of an estimate; a value beyond such a limit
+        is not necessarily a failure
     """
 
     rule: Rule
@@ -143,7 +143,8 @@ def _greatest_depth(series: ResultColumns, part: JudgedPart, leg: Leg) -> Column
     floats = depth <= (AT_SURFACE if reaches_the_surface(leg) else -np.inf)
     pieces = leg.file.pieces
     if part.clamp is None and pieces[part.index + 1].use == STAND_IN:
-        depth += pieces[part.index].length or 0.0  # an upper bound, apart from its stretch
+        # an upper bound of the depth, unless the piece stretches
+        depth += pieces[part.index].length or 0.0
     elif part.clamp is None:
         np.maximum(depth, series.depth(Seat(part.index + 1)), out=depth)
     depth[floats] = np.nan
@@ -194,8 +195,8 @@ class Exceedance:
 
     If the limit is an estimate, profiles that exceed it are left out of both numbers.
 
-    `worst` is the value farthest beyond the limit, or the closest to it if none is beyond, and
-    `time` is the time of this value. Both are None if there is no limit or no value.
+    `worst` is the value farthest beyond the limit, or the value closest to the limit if no value is
+    beyond it. `time` is the time of this value. Both are None if there is no limit or no value.
     """
 
     limit: CountedLimit
@@ -214,8 +215,8 @@ class RuleShare:
     judged : number of profiles in which at least one limit of the rule is evaluated
     fails, warns : fraction of these profiles in which the rule fails, and in which it warns but
         does not fail; None if there are no such profiles
-    fails_at_most : upper bound of `fails`, for which every unsolved profile with a current is
-        counted as a failure; None if no profile is evaluated
+    fails_at_most : upper bound of `fails`, which counts every unsolved profile with a current as a
+        failure; None if no profile is evaluated
     unknown : number of limits that cannot be evaluated, usually because a value is missing
     exceedances : frequency with which each limit is exceeded
     """

@@ -239,7 +239,8 @@ def _stops(series: ResultColumns, mooring: Design) -> Iterator[StopDepths]:
         assert isinstance(profiler.component, Profiler)
         for stop, label in zip(("upper", "lower"), profiler.component.between or (), strict=True):
             seat = seats[label]
-            if stop == "upper" and not seat.clamped:  # it ends at the beginning of the next piece
+            # a rigid upper stop ends where the next piece begins
+            if stop == "upper" and not seat.clamped:
                 seat = Seat(seat.number + 1)
             depths = np.nanpercentile(series.depth(seat), STOP_SHARES)
             pressures = pressure_at(depths, latitude)

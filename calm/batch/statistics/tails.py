@@ -71,14 +71,13 @@ class Tail:
         return self.location + self.scale * _grown(self.shape, growth)
 
     def interval(self, growth: float) -> tuple[float | None, float | None]:
-        """Return both ends of the `CONFIDENCE` interval of a return level, from its profile
-        likelihood.
+        """Return both ends of the `CONFIDENCE` interval of a return level.
 
-        For each possible level the likelihood is maximised over the other parameters. The interval
-        contains the levels for which twice the logarithm of this maximum is less than `CHI_SQUARE`
-        below the value for the fit (Coles 2001, §2.6.6, §3.3.4, §4.3.3). An end is None if it is
-        more than 100 standard deviations away from the estimate, because the data then do not bound
-        the level. Raises NotFitted if the search for a maximum fails.
+        For each possible level, the likelihood is maximised over the other parameters; L is this
+        maximum, and L₀ is the likelihood of the fit. The interval contains the levels for which
+        2 ln(L₀/L) is less than `CHI_SQUARE` (Coles 2001, §2.6.6, §3.3.4, §4.3.3). An end is None if
+        it is more than 100 standard deviations away from the estimate, because the data then do not
+        bound the level. Raises NotFitted if the search for a maximum fails.
         """
         estimate = self.level(growth)
         best = _loss(self.values, self.location, self.scale, self.shape, self.maxima)

@@ -31,7 +31,7 @@ HEAD = 38.0
 _PAD, _GAP, _INDENT = 4.0, 6.0, 10.0
 _CLAMP_AT = 16.0
 _SHORTEST, _PER_DECADE = 18.0, 9.0
-_NEAR_THE_END = 0.3  # of a group of parts: range of the places where it may end
+_NEAR_THE_END = 0.3  # a group of parts may end within this last fraction of its height
 
 # A4 leaves 180 by 267 mm; a long line is reduced to fit this height, but stays legible
 _WIDTH, _MARGIN = 508.0, 3.0
@@ -39,7 +39,8 @@ _MILLIMETRE = 72.0 / 25.4
 _PRINTED_HEIGHT, _LEAST_SCALE = 267.0 * _MILLIMETRE, 0.67
 _TITLE, _TITLE_LEADING = 13.0, 16.0
 _SHEAVE = 26.0 * SYMBOL_SCALE
-_SKY, _MAST, _SHIP, _HELICOPTER = 8.0, 26.0, 30.0, 28.0  # above the surface or the hook
+# heights above the surface, or above the hook
+_SKY, _MAST, _SHIP, _HELICOPTER = 8.0, 26.0, 30.0, 28.0
 _SUBMERGED, _BELOW_BODY = 12.0, 14.0
 _MOORED_AT, _TOWED_AT = 26.0, 46.0
 

@@ -155,7 +155,7 @@ def _sign(of: Piece | Clamp, levels: Levels) -> Sign:
 
 
 def afloat(sign: Sign) -> Sign:
-    """Return the symbol of a float at the surface: a sphere, or a buoy in place of any other."""
+    """Return the symbol of a float at the surface: a sphere for a sphere, otherwise a buoy."""
     return sign if sign.symbol is Symbol.SPHERE else replace(sign, symbol=Symbol.BUOY)
 
 

@@ -11,8 +11,8 @@ from calm.exchange.part_names import role_of
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.units import KILOGRAM_FORCE
 
-# ratio of the displacement to that from mass and weight, above which it is not a cable, even with
-# fairing
+# a diameter is doubtful if its displacement exceeds the displacement from mass and weight by this
+# factor, even for a cable with fairing
 _TOO_WIDE = 20.0
 _ROPE = 10.0  # m: a shorter segment may be a frame, whose diameter represents its drag
 _FASTEST = 10.0  # m/s: a drag table beyond this range is a function of depth

@@ -88,7 +88,7 @@ def read_cbl(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
             missing += error.problems
             if any(name in given or not name.isidentifier() for name in error.names):
                 break
-            given |= dict.fromkeys(error.names, "1")  # define them, to find other missing names
+            given |= dict.fromkeys(error.names, "1")  # to find other missing names
         except InputError:
             if not missing:
                 raise

@@ -15,7 +15,7 @@ from calm.files.definition import CATALOGUE_DENSITY
 from calm.units import KILOGRAM_FORCE
 
 _SLIGHT = 1e-6  # relative excess of hull volume over net buoyancy
-_FLAT = 1e-3  # m: height assumed for a float without one
+_FLAT = 1e-3  # m: height assumed for a float without a height
 _SOFT = 1e10  # Pa: ropes have a lower modulus, wires a higher one
 _HARD = re.compile(r"\bwire|\bchain|\bsteel", re.I)
 _LARGEST = 1e9  # m, kg: no piece is longer or heavier

@@ -24,7 +24,8 @@ _WANTED = frozenset(
     + [f"{name}{end}" for name in ("H", "B", "Wt", "Cd", "ME", "moorele") for end in ("", "t")]
     + ["Usp", "Vsp", "afh", *GROUPS]
 )
-_STRETCHED = 1.2  # times its length, a line may reach the surface
+# a line may reach the surface if this multiple of its length is at least the water depth
+_STRETCHED = 1.2
 _APART = 0.02  # m and share of the piece by which the two places of a clamp may differ
 _NOTE = (
     "cn and cx are Cd of Mooring Design & Dynamics, which neglects drag along lines and "

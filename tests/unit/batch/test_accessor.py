@@ -83,5 +83,5 @@ def test_the_shape_is_drawn_at_the_nearest_time(dataset):
 
 def test_no_shape_of_a_profile_without_equilibrium():
     dataset = make_result(3, status=[0, 1, 0])
-    with pytest.raises(UsageError, match="2001-01-01 01:00 has no equilibrium"):
+    with pytest.raises(UsageError, match="2001-01-01 01:00 cannot be drawn"):
         dataset.calm.plot_shape(time="2001-01-01T01:00")

@@ -65,7 +65,6 @@ def test_an_llvm_that_does_not_work_leaves_the_interpreted_solver(
         two_speeds.expect_many(1e9)
         assert not two_speeds.runs_compiled(Settings())
     assert not any(compiled.is_cached(each.value) for each in two_speeds.CompiledPart)
-    assert two_speeds._compile_ahead(two_speeds.CompiledPart.LINE) is None
     monkeypatch.setattr(compiled, "_entries", {})
     with pytest.raises(UsageError, match=r"does not work here \(RuntimeError: No available"):
         compiled.outcome(drag_share, True, 0.3, -0.1, 0.9, 0.7, 0.5, -0.2, 0.1)

@@ -115,15 +115,22 @@ def times(point: Point, x: float) -> float:
     return point.x * x
 
 
-def twice(function: Any, point: Point) -> float:
-    return function(point, 2.0) + function(Point(1.0, 0.0, 0), 1.0)  # type: ignore[no-any-return]
+def plus(point: Point, x: float) -> float:
+    return point.x + x
 
 
-def test_a_law_is_called_by_its_address() -> None:
-    point = Point(3.0, 0.0, 1)
-    function = compiled.by_address(times, point)
-    assert function(point, 2.0) == 6.0
-    assert compiled.outcome(twice, True, function, point) == 7.0
+def twice(function: Any, point: Point, x: float) -> float:
+    return function(point, x) + function(Point(1.0, 0.0, 0), 1.0)  # type: ignore[no-any-return]
+
+
+def both(point: Point, x: float) -> float:
+    return twice(times, point, x) + 100.0 * twice(plus, point, x)
+
+
+def test_a_law_is_passed_to_another_law() -> None:
+    given = Point(3.0, 0.0, 1), 2.0
+    assert both(*given) == 707.0
+    assert compiled.outcome(both, True, *given) == 707.0
 
 
 def with_else(n: int) -> int:

@@ -153,7 +153,7 @@ def test_what_is_left_out_is_said_beside_the_figures(fallen):
 
 def test_least_tension_is_not_said_to_include_the_clamps(summary):
     said = " ".join(summary_html(summary).split())
-    assert "minimum tension at the ends." in said
+    assert "minimum tension is judged at the ends." in said
 
 
 def test_the_table_gives_each_reason_once(short):

@@ -26,7 +26,7 @@ STACK = "{use: small, count: 1000}, {use: rope, length: 20 m}"
     [
         (1, LONG, "not-converged", "The line is 4201 m long, 4201 times the water depth"),
         (8, LONG, "not-converged", "525 times the water depth; the limit is 500 times"),
-        (100, STACK, "above-surface", "More than 16 floats would lie at the surface"),
+        (100, STACK, "above-surface", "More than 16 consecutive floats would lie at the surface"),
     ],
 )
 def test_it_is_refused(tmp_path: Path, depth: int, line: str, status: str, why: str) -> None:

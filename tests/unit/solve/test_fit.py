@@ -48,7 +48,7 @@ def test_a_clamp_below_the_cut_is_refused():
     with pytest.raises(NoEquilibrium) as caught:
         fit_length(clamped, water(500), 3, 120.0, Settings())
     assert caught.value.status == "no-equilibrium"
-    assert "390.00 m down to the lowest clamp" in caught.value.message
+    assert "390.00 m long down to its lowest clamp" in caught.value.message
 
 
 def test_a_line_too_heavy_to_stand_says_so():

@@ -365,6 +365,16 @@ def test_the_audit_sees_a_moved_node(monkeypatch: pytest.MonkeyPatch) -> None:
         solve_net(y_net(), 1, water_of(300.0, *SHEAR), Settings(compiled=False))
 
 
+def test_a_second_float_that_would_surface_is_refused_by_the_name_of_the_first() -> None:
+    hull = Floating(hull=spherical_hull(1.2), weight=3000.0, lift=6000.0)
+    parts = Point(6000.0, 1.2, 0.5), Wire(5.0), Point(3000.0, 0.9, 0.5), Wire(360.0)
+    line = replace(line_of(*parts), floating=hull)
+    with pytest.raises(NoEquilibrium) as refused:
+        solve_net([NetLeg(line, FREE, anchored(0.0, 0.0, 300.0))], 0, water_of(300.0, *SHEAR))
+    assert (refused.value.status, refused.value.piece) == ("above-surface", 0)
+    assert refused.value.message == "Besides piece 1, other parts of the leg would surface."
+
+
 def test_legs_too_short_to_meet_do_not_come_to_rest() -> None:
     legs = [
         NetLeg(line_of(Wire(50.0, stiffness=np.inf)), LegEnd(place=(0.0, 0.0, -10.0)),

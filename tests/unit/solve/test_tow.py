@@ -81,7 +81,7 @@ def test_a_fit_too_deep_already_says_so():
             "clamp_drag_curve": (),
         }
     )
-    with pytest.raises(NoEquilibrium, match=r"with 60 m out it is at (59|60)\."):
+    with pytest.raises(NoEquilibrium, match=r"with 60 m paid out, the lower end is at (59|60)\."):
         fit_tow_length(clamped, DEEP, Towing(0.5, 0.0), 0, 20.0, Settings())
 
 
