@@ -222,14 +222,10 @@ class Verdict:
         return demand / capacity if capacity > 0.0 else inf
 
     @property
-    def rank(self) -> tuple[int, float, float]:
-        """Sort key that puts the worst verdict first: by state, then by utilisation, and without a
-        utilisation by margin.
-        """
-        used, margin = self.utilisation, self.margin
-        if used is not None:
-            return -self.state.severity, -used, 0.0
-        return -self.state.severity, inf, 0.0 if margin is None else margin
+    def rank(self) -> tuple[int, float]:
+        """Sort key that puts the worst verdict first: by state, then by utilisation."""
+        used = self.utilisation
+        return -self.state.severity, inf if used is None else -used
 
 
 def no_capacity(verdict: Verdict) -> bool:
@@ -460,25 +456,31 @@ def by_rule(findings: Iterable[Finding]) -> dict[str, list[Finding]]:
 
 
 def worst_of(findings: Iterable[Finding]) -> Finding:
-    """Return the most severe finding; among equals, the one with the largest utilisation.
+    """Return the most severe finding; among equals, the one with the largest utilisation, or
+    without utilisations the one with the least margin.
 
     A finding that is not judged is returned only if there is no other finding.
     """
     found = [*findings]
     judged = [one for one in found if one.state is not State.NOT_JUDGED]
-    return min(judged or found, key=lambda one: one.rank)
+    return min(judged or found, key=_worst_first)
+
+
+def _worst_first(finding: Finding) -> tuple[tuple[int, float], float]:
+    margin = finding.margin if finding.utilisation is None else None
+    return finding.rank, 0.0 if margin is None else margin
 
 
 def governing(findings: Iterable[Finding]) -> Finding:
     """Return the governing finding, which is the finding with the largest utilisation.
 
     Of several findings with the same utilisation, the most severe governs. If no finding has a
-    utilisation, the most severe finding governs.
+    utilisation, the most severe finding with the least margin governs.
     """
     found = [*findings]
     used = [(use, one) for one in found if (use := one.utilisation) is not None]
     if not used:
-        return min(found, key=lambda one: one.rank)
+        return min(found, key=_worst_first)
     return min(used, key=lambda pair: (-pair[0], pair[1].rank))[1]
 
 
