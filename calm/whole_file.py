@@ -20,7 +20,7 @@ UNFINISHED = ".calm-part"
 
 # characters of the target's name that the temporary name repeats, to limit its length
 _LONGEST = 40
-_STALE = 600.0  # seconds: an older temporary file is not being written by any process
+_STALE = 600.0  # seconds: no process is still writing an older temporary file
 _TOGETHER = 32  # number of files flushed at once, since waiting for each in turn is slow
 
 _ALIKE = 0.75

@@ -138,7 +138,7 @@ class Catenary:
         h, w = np.asarray(self.horizontal, float), np.asarray(self.weight, float)
         s = np.clip(arc, 0.0, length)
         if not np.all(np.abs(s - arc) <= 1e-12 * length):
-            raise ValueError("an arc must lie between 0 and the length of the catenary")
+            raise ValueError("an arc length must be from 0 to the length of the catenary")
         lifted = np.maximum(s - self.grounded, 0.0)
         x, z = position(lifted, h, bottom, w)
         compliance = 1.0 / np.asarray(self.stiffness, float)
@@ -206,8 +206,8 @@ def _refuse_slack(x: float, z: float, length: float, weight: float, stiffness: f
     plumb = 2.0 * z / (1.0 + sqrt(1.0 + 2.0 * weight * z / stiffness))
     if plumb < length and length - plumb >= x:
         raise ValueError(
-            f"a line of {length:g} m is slack: {plumb:g} m are suspended and the rest reaches "
-            f"{x:g} m"
+            f"a line of {length:g} m is slack: {plumb:g} m hang vertically, and the rest is at "
+            f"least as long as the horizontal distance, {x:g} m"
         )
 
 

@@ -255,7 +255,9 @@ _LEAST_SLACK = 1e-12
 
 def family(what: str) -> NoEquilibrium:
     """Return the answer ``one-parameter-family``, with the message `what`."""
-    return NoEquilibrium("one-parameter-family", what, "Replace one of these by another quantity.")
+    return NoEquilibrium(
+        "one-parameter-family", what, "Replace one of these quantities with another one."
+    )
 
 
 def contradiction(known: Mapping[str, float]) -> NoEquilibrium | None:
@@ -276,7 +278,8 @@ def contradiction(known: Mapping[str, float]) -> NoEquilibrium | None:
     if above is not None and above <= (below or 0.0) + height:
         least = "that at the other end" if below is not None else "w H" if height else "0"
         return _inconsistent(
-            f"The tension at the upper end (lower end if buoyant) must exceed {least}.",
+            "The tension at the upper end (for a buoyant cable, at the lower end) must exceed "
+            f"{least}.",
             "Check that the two ends are not exchanged, and check the weight.",
         )
     chord = math.hypot(height, distance)
@@ -319,13 +322,15 @@ def reason(k: float, known: Mapping[str, float], floats: bool) -> NoEquilibrium:
         )
         return _none(message, "Lengthen the cable or bring its ends closer.")
     if end is not None and not 0.0 < end < math.pi:
-        message = "The cable must rise at the end with the larger tension."
+        message = (
+            "The cable must rise in the direction from A to B at the end with the larger tension."
+        )
         return _none(message, "Set an angle between 0 and 180° at that end.")
     if start is not None and end is not None:
         lean = start + 2 * math.pi if start < critical - math.pi else start
         if (lean - critical) * (end - critical) <= 0.0:
             return _none(
-                f"No cable can pass through {angle}.",
+                f"The angle along a cable cannot cross {angle}.",
                 "Set two angles on the same side of this angle.",
             )
         return _none(
@@ -335,7 +340,7 @@ def reason(k: float, known: Mapping[str, float], floats: bool) -> NoEquilibrium:
         )
     return _none(
         f"No cable in a uniform current at K = {k:g} satisfies these three quantities.",
-        "Check K and the quantities, or replace one of the quantities by another.",
+        "Check K and the quantities, or replace one of the quantities with another one.",
     )
 
 
@@ -378,7 +383,8 @@ def straight(k: float, known: Mapping[str, float]) -> ChartSolution | NoEquilibr
         below = max(below, 0.0)
     if below is None or length is None:
         return family(
-            "A straight cable at the critical angle can have these quantities at any length."
+            "These quantities do not determine the length or the tension of a straight cable at "
+            "the critical angle."
         )
     rise = length * sine
     distance = length * math.cos(angle)

@@ -69,8 +69,8 @@ class Hodograph:
     def __post_init__(self) -> None:
         if not (isfinite(self.weight_ratio) and self.weight_ratio > 0.0):
             raise ValueError(
-                f"weight over normal drag must be above 0, not {self.weight_ratio:g}; "
-                "a line without weight is the neutral line"
+                f"the ratio of weight to normal drag must be above 0, not {self.weight_ratio:g}; "
+                "for a line without weight, use the neutral line"
             )
         if not (isfinite(self.friction) and self.friction >= 0.0):
             raise ValueError(f"the tangential drag must not be negative: {self.friction:g}")

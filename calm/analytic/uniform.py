@@ -59,7 +59,7 @@ def neutral_line(
     if not (np.all(t > 0.0) and np.all(r > 0.0)):
         raise ValueError("the tension and the normal drag of a neutral line must be above 0")
     if not np.all((start > 0.0) & (start < np.pi)):
-        raise ValueError("a neutral line's angle must lie between 0 and π")
+        raise ValueError("the angle of a neutral line must be between 0 and π")
     cotangent = np.cos(start) / np.sin(start)
     z, x = catenary.position(s, t, t * cotangent, r)
     phi: Floats = np.arctan2(1.0, cotangent + r * s / t)
@@ -80,7 +80,10 @@ def critical_angle(weight_ratio: ArrayLike) -> Floats:
     """
     p = np.asarray(weight_ratio, float)
     if not np.all(p >= 0.0):
-        raise ValueError("weight over normal drag must not be negative: turn the line upside down")
+        raise ValueError(
+            "the ratio of weight to normal drag must not be negative; a line lighter than water is "
+            "the vertical mirror image of a heavy line"
+        )
     u = cosine_of_critical_angle(p)
     return np.arctan2(np.sqrt(p * u), u)
 
@@ -132,7 +135,7 @@ def tension_ratio(
     m = branch.parameter(_checked(angle))
     if not np.all(np.isfinite(m)):
         raise ValueError(
-            f"an angle is not on the same side of the critical angle, "
+            f"all angles must be on the same side of the critical angle, "
             f"{np.degrees(branch.critical_angle):.6g}°, as the start"
         )
     return np.exp(branch.log_tension(m) - branch.log_tension(branch.parameter(start)))
@@ -178,9 +181,9 @@ def heavy_line(
         raise ValueError("the tension and the normal drag of a heavy line must be above 0")
     arcs = np.asarray(arc, float)
     if not np.all(np.isfinite(arcs)):
-        raise ValueError("the arcs of a heavy line must be finite")
+        raise ValueError("the arc lengths along a heavy line must be finite")
     if not -np.pi <= angle <= np.pi:
-        raise ValueError(f"the angle of a heavy line must lie from -π to π, not {angle:g}")
+        raise ValueError(f"the angle of a heavy line must be from -π to π, not {angle:g}")
 
     def follow(s: float, pull: float, phi: float) -> tuple[float, float, float, float]:
         if phi < 0.0:
@@ -231,7 +234,7 @@ def branch_of(start: float, weight_ratio: float, friction: float, law: Law) -> H
 def _checked(angle: ArrayLike) -> Floats:
     phi = np.asarray(angle, float)
     if not np.all((phi >= 0.0) & (phi <= np.pi)):
-        raise ValueError("the angle of a heavy line must lie from 0 to π")
+        raise ValueError("the angle of a heavy line must be from 0 to π")
     return phi
 
 
@@ -274,8 +277,8 @@ def cable_functions(angle: ArrayLike, weight_ratio: float, friction: float = 0.0
     angles = np.asarray(angle, float)
     if not np.all((angles > branch.critical_angle) & (angles <= np.pi)):
         raise ValueError(
-            f"angles must lie above the critical angle, {np.degrees(branch.critical_angle):.6g}°, "
-            "and not above 180°"
+            "angles must be greater than the critical angle, "
+            f"{np.degrees(branch.critical_angle):.6g}°, and at most 180°"
         )
     start = float(branch.parameter(0.5 * np.pi))
     rows = []

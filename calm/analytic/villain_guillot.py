@@ -169,7 +169,7 @@ def straight_cable(
 def check_arc(arc: Floats, tension: Floats) -> None:
     """Raise ValueError if an arc length or a tension is negative or infinite."""
     if not all(np.all((value >= 0.0) & (value < np.inf)) for value in (arc, tension)):
-        raise ValueError("the arc and the tension of a towed cable must not be negative")
+        raise ValueError("the arc length and the tension of a towed cable must not be negative")
 
 
 def linear_tension_ratio(
@@ -202,8 +202,8 @@ def linear_tension_ratio(
     ratio = np.sin(there) / np.sin(here)
     if not np.all((ratio > 0.0) & (np.abs(here) < pi) & (np.abs(there) < pi)):
         raise ValueError(
-            "the angles must be on the same side of the angle of the straight cable, less than π "
-            "away"
+            "the angles must be on the same side of the angle of the straight cable, and differ "
+            "from it by less than π"
         )
     return np.exp(power * np.log(ratio) + rate * (here - there))
 
@@ -250,7 +250,7 @@ def unequal_cable(
     side, away = (1.0 if angle > mean else -1.0), abs(angle - mean)
     if not away < pi:
         raise ValueError(
-            "the angle at the body must differ by less than π from that of the straight cable"
+            "the angle at the body must differ from the angle of the straight cable by less than π"
         )
     start = -np.log(np.tan(0.5 * away))
     load = hypot(weight, normal_drag)

@@ -198,7 +198,9 @@ def solve_profiles(
         levels, east, north, up = _recorded(mooring, u)
         return batch.solve(east, north, levels, up, workers=workers)
     if v is None or depth is None:
-        raise TypeError("u needs v and depth, unless it is a path, a dataset or a table")
+        raise TypeError(
+            "v or depth is missing; they can only be omitted if u is a path, a dataset or a table"
+        )
     return batch.solve(cast("ArrayLike", u), v, depth, w, workers=workers)
 
 
@@ -421,13 +423,13 @@ def _checked(
     up = np.broadcast_to(np.zeros(()), east.shape) if w is None else _numbers(w)
     if not east.ndim or not east.shape == north.shape == up.shape:
         raise ValueError(
-            "u, v and w must have the same shape, profiles by levels; they have "
+            "u, v and w must have the same shape, profiles by levels; their shapes are "
             f"{east.shape}, {north.shape}, {up.shape}"
         )
     levels = east.shape[-1]
     if down.shape not in {(levels,), (1, levels), east.shape}:
         raise ValueError(
-            f"depth must have the shape {(levels,)}, or that of u, {east.shape}; it has "
+            f"depth must have the shape {(levels,)} or the shape of u, {east.shape}; its shape is "
             f"{down.shape}"
         )
     shape = east.shape[:-1]

@@ -29,8 +29,8 @@ MOST_COUNT = 1000
 Parts = tuple[Piece | Clamp, ...]
 
 _ANCHOR_WEIGHT = (
-    "the weight that the anchor needs follows from its load: `calm run` prints the weight "
-    "required, and `calm check` the largest of all situations"
+    "the required weight of an anchor follows from its load: `calm run` prints it for one "
+    "environment, and `calm check` for the worst of all situations"
 )
 
 
@@ -126,7 +126,9 @@ def _length(text: str, file: MooringFile, parts: Parts) -> Adjustment:
         raise LookupError("only the length of cables and chains can be changed")
     now, depth = pieces[0].length, file.environment.depth
     if now is None or any(piece.length is None for piece in pieces):
-        raise LookupError("its length is fitted (`length: fit`); set a length in the file first")
+        raise LookupError(
+            "the length of this piece is fitted (`length: fit`); set a length in the file first"
+        )
     _refuse_several_items(pieces)
     assert depth is not None  # a mooring has a seabed
     places = {piece.place for piece in pieces}
@@ -156,9 +158,13 @@ def _count(text: str, file: MooringFile, parts: Parts) -> Adjustment:
     if len(pieces) < len(item) and pieces[0].place.part >= 0:
         name = pieces[0].named
         advice = f"change `{name}.count`" if name else "give the assembly a `label` in the file"
-        raise LookupError(f"it is part of an assembly, which is counted as a whole: {advice}")
+        raise LookupError(
+            f"this piece is part of an assembly, which can only be counted as a whole; {advice}"
+        )
     if any(each.length is None for each in item):
-        raise LookupError("its length is fitted (`length: fit`), which allows only one piece")
+        raise LookupError(
+            "this piece has a fitted length (`length: fit`), so its count cannot be changed"
+        )
     once = _without_numbers([one for one in item if one.place.repeat == 0], item)
     now = len(item) // len(once)
 
@@ -202,8 +208,10 @@ def _without_numbers(once: Sequence[Piece], item: Sequence[Piece]) -> list[Piece
 
 def _refuse_several_items(pieces: list[Piece]) -> None:
     if len({piece.place.item for piece in pieces}) > 1:
-        named = pieces[0].label
-        raise LookupError(f"several items of the line have this label; name one: {named} …")
+        raise LookupError(
+            "several items of the line have this label; select one of them, such as "
+            f"`{pieces[0].label}`"
+        )
 
 
 _FIELDS = {"buoyancy": _buoyancy, "length": _length, "count": _count}
@@ -238,7 +246,9 @@ def parse_change(text: str, file: MooringFile) -> Adjustment:
         if assembly and field != "count":
             parts = parts_of(_without_numbers(assembly, assembly))
             listed = ", ".join(dict.fromkeys(f"`{part.label}`" for part in parts))
-            raise LookupError(f"an assembly has no {field}: change its count, or a part: {listed}")
+            raise LookupError(
+                f"an assembly has no {field}; change its count, or change one of the parts {listed}"
+            )
         return _FIELDS[field](text, file, assembly or all_parts(file.pieces, name))
     except LookupError as error:
         raise pointed("--change", text, 0, str(error.args[0])) from None

@@ -268,7 +268,7 @@ class Design:
 
     @property
     def solutions(self) -> tuple[Solution, ...]:
-        """Solutions of the legs in the water of the file. Raises NoEquilibrium if there is none."""
+        """Solutions of all legs in the water of the file. Raises NoEquilibrium if there is none."""
         if self.several:
             return self.standing.legs
         return (self.leg.equilibrium(self.water),)

@@ -158,8 +158,8 @@ def explain(result: Result, label: str | None = None) -> Explanation:
         shares = _shares(result, figures, "knockdown" in quantities, part.place)
     except NoEquilibrium as failure:
         notes.append(
-            "The shares of the drags cannot be computed, because the line has no equilibrium "
-            f"with less drag ({failure.status}: {failure.message})"
+            "The share of each part's drag cannot be computed, because the line has no equilibrium "
+            f"if its drag is reduced ({failure.status}: {failure.message})"
         )
     else:
         causes = _causes(result, shares)
@@ -169,8 +169,9 @@ def explain(result: Result, label: str | None = None) -> Explanation:
             without_drag[name] = 0.0 if name == "knockdown" else float(shares.start[column])
         if miss > attribution.LARGEST_MISS:
             notes.append(
-                "The shares are approximate, because the effect is not proportional to the drag: "
-                f"{miss:.0%} of it was divided in proportion to the shares."
+                "The shares are approximate, because the effect is not proportional to the drag. "
+                f"Their sum differed from the total effect by {miss:.0%}, so they were scaled to "
+                "match it."
             )
     return Explanation(
         label=part.label,
@@ -191,18 +192,18 @@ _COLUMNS = ("knockdown", "excursion", "used_buoyancy")
 def _notes(result: Result, quantities: tuple[str, ...], *, surface: bool) -> Iterator[str]:
     if result.several:
         yield (
-            "Excursions are measured from the origin of the coordinates; the anchor is that "
-            "with the largest required weight."
+            "Excursions are measured from the origin of the coordinates; the anchor values are "
+            "those of the anchor with the largest required weight."
         )
     if surface:
         yield (
-            "A float at the surface has no knockdown; the table gives the causes of its excursion "
-            "and of the buoyancy in use instead."
+            "A float at the surface has no knockdown; instead, the table gives the causes of its "
+            "excursion and of its used buoyancy."
         )
     elif "knockdown" not in quantities:
         yield (
-            "The line has no unique shape in still water, so its knockdown is undefined; the table "
-            "gives the causes of its excursion instead."
+            "The line has no unique shape in still water, so its knockdown is undefined; instead, "
+            "the table gives the causes of its excursion."
         )
     if not result.design.water.moving:
         yield "There is no current, so there is no drag."

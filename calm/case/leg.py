@@ -250,10 +250,10 @@ class Leg:
         floats_at_rest = length[-1] > height and net_lift > 0.0
         if float(lift.sum()) <= 0.0 and not floats_at_rest:
             return too_heavy(lift)
-        pulls = "pulls the line's top under water and " if floats_at_rest else ""
+        pulls = "pulls the top of the line under water and " if floats_at_rest else ""
         return Status.GROUNDED.because(
-            f"The current {pulls}puts {label} on the seabed, where only chain of a "
-            "sub-surface line may lie."
+            f"The current {pulls}puts {label} on the seabed. In a sub-surface mooring, only chain "
+            "may lie on the seabed."
         )
 
     def refuse_in_the_slope(self, solution: Solution) -> None:
@@ -274,7 +274,7 @@ class Leg:
             piece = self.file.pieces[count - 1 - number if solution.line.towed else number]
             raise Status.GROUNDED.because(
                 f"{piece.label} would be {below[worst]:.2f} m below the sloping seabed.",
-                advice="Raise it, or move the mooring down the slope.",
+                advice="Raise this part, or move the mooring down the slope.",
             )
 
     def solved(self, line: Line) -> Solution:

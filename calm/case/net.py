@@ -72,8 +72,8 @@ def _why_not(legs: Sequence[Leg], laid: Sequence[NetLeg]) -> NoEquilibrium | Non
         lift += max(float(upto.max()), 0.0) if isfinite(each.lower.seabed) else float(upto[-1])
     if lift <= 0.0 and not any(end.held for leg in legs for end in (leg.top, leg.bottom)):
         return Status.NO_EQUILIBRIUM.because(
-            "The net sinks: without the legs that may lie on the seabed, its weight in water "
-            f"exceeds its buoyancy by {say('force', -lift)}, and no end is held.",
+            "The net sinks: no end is held, and its weight in water exceeds its buoyancy by "
+            f"{say('force', -lift)}, not counting parts that may lie on the seabed.",
             advice="Add buoyancy.",
         )
     shortest: dict[Any, tuple[float, tuple[str, ...]]] = defaultdict(lambda: (inf, ()))
@@ -90,7 +90,7 @@ def _why_not(legs: Sequence[Leg], laid: Sequence[NetLeg]) -> NoEquilibrium | Non
         if length < dist(first, last):
             subject = f"Leg {names[0]} is" if len(names) == 1 else f"Legs {', '.join(names)} are"
             return Status.NO_EQUILIBRIUM.because(
-                f"{subject} {say('length', length)} long in all, but the ends are held "
+                f"{subject} {say('length', length)} long in total, but the ends are held "
                 f"{say('length', dist(first, last))} apart.",
                 advice="Lengthen a leg, or bring the ends closer together.",
             )

@@ -50,7 +50,7 @@ class ProfilerTravel:
 
 
 def profilers_of(leg: Leg) -> tuple[ProfilerTravel, ...]:
-    """Solve every profiler of a line along its path; the other profilers are at their upper stops.
+    """Solve a line with each profiler in turn along its path, and the others at their upper stops.
 
     Raises NoEquilibrium if there is no equilibrium with a profiler at one of its `PLACES`
     positions.

@@ -232,7 +232,7 @@ def _planned(part: Piece | Clamp) -> float:
 class ComponentRow:
     """One piece of a solved line; a row of the table `Components`."""
 
-    part: Piece = column("the piece of the file", of_part=lambda piece: piece, in_repr=False)
+    part: Piece = column("piece as defined in the file", of_part=lambda piece: piece, in_repr=False)
     index: int = column(
         "number of the piece in the file, from 0",
         _OF_PIECES,
@@ -259,7 +259,7 @@ class ComponentRow:
         at_anchor=lambda end: end.height,
     )
     cut_length: float = column(
-        "length before any load",
+        "unstretched length",
         FILES,
         found=lambda line: line.cut_length,
         at_anchor=lambda end: end.height,
@@ -283,7 +283,7 @@ class ComponentRow:
         attributes=_LEVEL,
     )
     planned_depth: float = column(
-        "depth that the upper end is planned to have in still water; unknown without a plan",
+        "planned depth of the upper end in still water; unknown without a plan",
         _WITH_PLANS,
         place=2,
         of_part=lambda piece: _planned(piece),
@@ -346,7 +346,7 @@ class ComponentRow:
         at_anchor=lambda end: end.above.tension_bottom,
     )
     least_tension: float = column(
-        "minimum tension above the seabed; unknown for a piece entirely on the seabed",
+        "minimum tension in the suspended part; unknown if the whole piece lies on the seabed",
         title="minimum tension",
         unit="N",
         decimals=0,
@@ -354,21 +354,21 @@ class ComponentRow:
         at_anchor=lambda end: end.above.tension_bottom,
     )
     tilt: float = column(
-        "angle of the chord from the vertical",
+        "angle between the vertical and the chord of the piece",
         _IN_BATCHES | LINE_TABLES | Output.BUILDER,
         place=9,
         found=lambda line: line.tilt,
         at_anchor=lambda end: 0.0,
     )
     knockdown: float = column(
-        "depth of the upper end less its depth in still water",
+        "depth of the upper end minus its depth in still water",
         _IN_BATCHES | Output.MOORING_TABLE | Output.NET_TABLE,
         place=6,
         found=lambda line: line.knockdown,
         at_anchor=lambda end: 0.0,
     )
     safety_factor: float = column(
-        "breaking load over the maximum tension",
+        "breaking load divided by the maximum tension",
         FILES | LINE_TABLES,
         place=11,
         derived=lambda rows: (
@@ -377,12 +377,12 @@ class ComponentRow:
         ),
     )
     utilisation: float = column(
-        "maximum tension over the working load",
+        "maximum tension divided by the working load",
         FILES,
         derived=lambda rows: rows.tension / catalogue_figures(rows.part, "working_load"),
     )
     reynolds: float = column(
-        "largest Reynolds number from speed and diameter",
+        "largest Reynolds number, computed from current speed and diameter",
         Output.JSON,
         title="Reynolds number",
         unit="",
@@ -408,7 +408,7 @@ class ClampRow:
 
     prefix: ClassVar[str] = "clamp_"
 
-    part: Clamp = column("the clamp of the file", of_part=lambda clamp: clamp, in_repr=False)
+    part: Clamp = column("clamp as defined in the file", of_part=lambda clamp: clamp, in_repr=False)
     index: int = column(
         "number of the piece with the clamp, from 0",
         _OF_PIECES,
@@ -430,7 +430,7 @@ class ClampRow:
         attributes=_LEVEL,
     )
     planned_depth: float = column(
-        "depth planned for the clamped instrument in still water; unknown without a plan",
+        "planned depth of the clamped instrument in still water; unknown without a plan",
         _WITH_PLANS,
         of_part=lambda clamp: _planned(clamp),
     )
@@ -453,13 +453,13 @@ class ClampRow:
         at_anchor=lambda on: on.anchor.tension,
     )
     tilt: float = column(
-        "angle of the line at the clamp from the vertical",
+        "angle between the vertical and the line at the clamp",
         _IN_BATCHES,
         found=lambda held: held.tilt,
         at_anchor=lambda on: on.anchor.tilt,
     )
     knockdown: float = column(
-        "depth of the clamped instrument less its depth in still water",
+        "depth of the clamped instrument minus its depth in still water",
         _IN_BATCHES,
         found=lambda held: held.knockdown,
         at_anchor=lambda on: on.anchor.knockdown,
@@ -572,7 +572,7 @@ class Shape:
     prefix: ClassVar[str] = "shape_"
 
     depth: Floats = column(
-        "depth of the line",
+        "depth of the node",
         _OF_NODES,
         found=lambda nodes: -nodes.position[:, 2],
         attributes=_LEVEL,
@@ -587,9 +587,9 @@ class Shape:
         _OF_NODES,
         found=lambda nodes: nodes.position[:, 1],
     )
-    tension: Floats = column("tension of the line", _OF_NODES, found=lambda nodes: nodes.tension)
+    tension: Floats = column("tension at the node", _OF_NODES, found=lambda nodes: nodes.tension)
     tilt: Floats = column(
-        "angle of the segment that ends at the node from the vertical",
+        "angle between the vertical and the segment that ends at the node",
         _OF_NODES,
         found=lambda nodes: nodes.tilt,
     )
@@ -656,13 +656,14 @@ class Top:
     x: float = column(f"{_EAST}, at the free end", Output.JSON)
     y: float = column(f"{_NORTH}, at the free end", Output.JSON)
     knockdown: float | None = column(
-        "depth of the free end less its depth in still water", Output.JSON
+        "depth of the free end minus its depth in still water", Output.JSON
     )
     used_buoyancy: float = column(
-        "share of the buoyancy at the surface that is in use; 1 below the surface", Output.JSON
+        "used fraction of the buoyancy of the float at the surface; 1 if the float is submerged",
+        Output.JSON,
     )
     reserve: float = column(
-        "buoyancy at the surface that is not in use; 0 below the surface", Output.JSON
+        "unused buoyancy of the float at the surface; 0 if the float is submerged", Output.JSON
     )
     draft: float | None = column(
         "draft of the hull at the surface, if the hull is known", Output.JSON, default=None
@@ -691,7 +692,9 @@ class TowPoint:
     """The load of a towed line on the ship."""
 
     tension: float = column("tension of the line at the ship", Output.JSON)
-    angle: float = column("angle of the line at the ship below the horizontal", Output.JSON)
+    angle: float = column(
+        "angle between the horizontal and the line at the ship, positive down", Output.JSON
+    )
     vertical: float = column("downward pull on the ship", Output.JSON)
     horizontal: float = column("backward pull on the ship", Output.JSON)
 
@@ -703,7 +706,9 @@ class TowedBody:
     depth: float = column("depth of the towed body", Output.JSON)
     layback: float = column("horizontal distance behind the tow point", Output.JSON)
     tension: float = column("tension at the towed body", Output.JSON)
-    angle: float = column("angle of the line above the body from the horizontal", Output.JSON)
+    angle: float = column(
+        "angle between the horizontal and the line just above the body", Output.JSON
+    )
 
 
 @dataclass(frozen=True)
@@ -714,7 +719,7 @@ class EndLoad:
     """
 
     leg: str = column("name of the leg", Output.JSON)
-    tension: float = column("tension of the leg at its end", _AN_END, title="tension", place=1)
+    tension: float = column("tension of the leg at this end", _AN_END, title="tension", place=1)
     vertical: float = column("upward pull of the leg", _AN_END, title="vertical", place=2)
     horizontal: float = column("horizontal pull of the leg", _AN_END, title="horizontal", place=3)
     angle: float = column("angle of the pull from the vertical", Output.JSON)
@@ -729,7 +734,7 @@ class EndLoad:
         "unstretched length of the leg on the seabed", Output.JSON, default=0.0
     )
     slack_length: float = column(
-        "length on the seabed in excess of the distance to the anchor",
+        "length on the seabed minus the distance from the touchdown point to the anchor",
         Output.JSON,
         title="slack length",
         unit="m",
@@ -746,7 +751,7 @@ class NodePlace:
     x: float = column("offset of the node to the east of the origin", _AN_END)
     y: float = column("offset of the node to the north of the origin", _AN_END)
     imbalance: float = column(
-        "remaining sum of the forces at the node",
+        "resultant force that remains at the node",
         Output.JSON,
         title="imbalance",
         unit="N",
@@ -802,14 +807,14 @@ MOORED_ENDS = (
     ResultColumn(
         "used_buoyancy",
         QUANTITIES["used_buoyancy"],
-        "share of the buoyancy at the surface that is in use",
+        "used fraction of the buoyancy of the float at the surface",
         _OF_ENDS,
         found=lambda line: _free(line) * line.top.used_buoyancy,
     ),
     ResultColumn(
         "other_used_buoyancy",
         QUANTITIES["used_buoyancy"],
-        "share of the buoyancy in use in another equilibrium, if one was found",
+        "used fraction of the float's buoyancy in another equilibrium, if one was found",
         _OF_ENDS,
         found=lambda line: _free(line) * line.other_used_buoyancy,
     ),

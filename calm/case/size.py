@@ -156,8 +156,8 @@ def size(
     before = at(adjustment.now)
     if wanted.relation == "=" and before.measured is None:
         raise UsageError(
-            f"{wanted.text}: the present mooring has no such value to start "
-            f"from{f' ({before.failure})' if before.failure else ''}; write <= or >="
+            f"{wanted.text}: the search needs a present value to start from, and the mooring has "
+            f"none{f' ({before.failure})' if before.failure else ''}; write <= or >="
         )
     first = 0.0 if before.measured is None else before.measured - wanted.limit
     sign = -1.0 if wanted.relation == ">=" or (wanted.relation == "=" and first < 0.0) else 1.0
@@ -242,8 +242,11 @@ def _why_not(
                 f"{target.quantity}."
             )
             return message, "Choose another quantity, such as the excursion."
-        message = f"The mooring has no equilibrium for any {change.text} {span}. Present value:"
-        return f"{message} {failure.status}: {failure.message}", failure.advice
+        message = f"The mooring has no equilibrium for any {change.text} {span}."
+        return (
+            f"{message} At the present value: {failure.status}: {failure.message}",
+            failure.advice,
+        )
     best = at(least)
     assert best.measured is not None
     nearest, where = with_unit(best.measured, target.unit), with_unit(least, change.unit)

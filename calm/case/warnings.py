@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from math import hypot
 from typing import Protocol
 
@@ -181,7 +181,10 @@ def _overstretched(result: _Measured, solution: Solution) -> Iterator[str]:
     ahead = greatest[::-1] if line.towed else greatest
     for label, strain in zip(result.components.label, ahead, strict=False):
         if strain > LARGEST_STRAIN:
-            yield f"{label} stretches by {100 * strain:.0f} %, which no linear stiffness describes."
+            yield (
+                f"{label} stretches by {100 * strain:.0f} %; a linear stiffness is not valid for "
+                "such a large stretch."
+            )
 
 
 def _beyond_the_table(result: _Measured, solution: Solution) -> Iterator[str]:
@@ -198,13 +201,7 @@ def _fast_flow(result: _Measured, _: Solution) -> Iterator[str]:
     """Warn about fast flow past a tow, because the design check does not cover tows."""
     fast = fast_pieces(result)
     if fast:
-        row, limit = fast[0]
-        others = f" and {len(fast) - 1} more" if len(fast) > 1 else ""
-        yield (
-            f"Reynolds number above {power_text(limit)} ({row.label}: "
-            f"{power_text(row.reynolds)}{others}), outside the valid range of the drag "
-            "coefficient. Check the coefficient."
-        )
+        yield f"{fast_text(fast)} Check the coefficient."
 
 
 def fast_pieces(result: _Measured) -> list[tuple[ComponentRow, float]]:
@@ -222,6 +219,16 @@ def fast_pieces(result: _Measured) -> list[tuple[ComponentRow, float]]:
     ]
     fast = [(row, limit) for row, limit in rows if row.reynolds > limit]
     return sorted(fast, key=lambda entry: -entry[0].reynolds / entry[1])
+
+
+def fast_text(fast: Sequence[tuple[ComponentRow, float]]) -> str:
+    """Describe the first of the pieces from `fast_pieces`, and the number of these pieces."""
+    row, limit = fast[0]
+    count = f" ({len(fast)} pieces exceed the limits of their coefficients)"
+    return (
+        f"The Reynolds number of {row.label} is {power_text(row.reynolds)}; the drag coefficient "
+        f"is valid up to {power_text(limit)}{count if len(fast) > 1 else ''}."
+    )
 
 
 def power_text(number: float) -> str:
@@ -260,8 +267,8 @@ def _on_the_seabed(result: _Measured, solution: Solution) -> Iterator[str]:
         if worst > solution.depth_error + 1e-3:
             lying_length = say("grounded_length", solution.grounded_length)
             yield (
-                f"{lying_length} of line lies on the plane of the seabed about its anchor, which "
-                f"differs from the grid by up to {worst:.2f} m there."
+                f"{lying_length} of line lies on the seabed, which is treated as a plane around "
+                f"the anchor; the depth grid differs from this plane by up to {worst:.2f} m there."
             )
     if solution.landed and result.still_shape is result.shape and not solution.pulled:
         yield (
@@ -276,8 +283,8 @@ def _slack(result: _Measured, solution: Solution) -> Iterator[str]:
         lying = {pieces[p].component.kind for p in solution.element_piece[solution.hanging :]}
         yield (
             f"Leg {result.name} is slack: the {'chain' if 'chain' in lying else 'line'} on the "
-            f"seabed is {say('grounded_length', solution.slack)} longer than the distance to its "
-            "anchor."
+            f"seabed is {say('grounded_length', solution.slack)} longer than the distance from the "
+            "touchdown point to the anchor."
         )
 
 
@@ -317,15 +324,15 @@ def _hull_unknown(result: _Measured, solution: Solution) -> Iterator[str]:
     riding, immersed = solution.riding, result.file.solver.buoy_drag == "immersed"
     if solution.surface and immersed and (riding is None or np.isnan(riding.draft)):
         afloat = [result.components.label[piece] for piece in solution.afloat]
-        reason = (
-            "has no hull, or no mass or volume to compute its draft"
-            if len(afloat) == 1
-            else "are at the surface together"
-        )
+        reason, floats = "has no hull, or neither mass nor volume", "the float is"
+        if len(afloat) > 1:
+            reason, floats = "are at the surface together", "the floats are"
         state = (
-            "it is treated as just immersed" if riding is None else "the drag `k_surface` is used"
+            f"{floats} treated as just immersed"
+            if riding is None
+            else "the drag is that of `k_surface`"
         )
-        yield f"{', '.join(afloat)} {reason}; {state}, so the draft is unknown."
+        yield f"The draft is unknown, because {', '.join(afloat)} {reason}; {state}."
 
 
 def buoyancy_of_sea_water(leg: Leg) -> tuple[Piece | Clamp, str] | None:

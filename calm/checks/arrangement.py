@@ -75,7 +75,10 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
         return
     above = [part.component for part in every_part(pieces[: release + 1])]
     if not _floats(pieces[: release + 1]):
-        message = f"No piece above {piece.label} is buoyant: after release, it stays on the seabed."
+        message = (
+            f"No piece above {piece.label} is buoyant, so the release stays on the seabed when it "
+            "opens."
+        )
         yield verdict_on(piece, State.FAIL, message, "Put the floats above the release.")
         return
     doubts = []
@@ -84,7 +87,8 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
     if length < LEAST_BELOW_RELEASE and all(one.fit_top_depth is None for one in below):
         message = (
             f"{piece.label} is {say('depth', length)} above the anchor; "
-            f"at least {LEAST_BELOW_RELEASE:g} m keeps a release clear of mud and falling gear."
+            f"a release needs at least {LEAST_BELOW_RELEASE:g} m to stay clear of mud and of "
+            "falling gear."
         )
         doubts.append((piece, message, "Insert rope or chain between release and anchor."))
     text = _words(piece.use, piece.component.name, piece.label)
@@ -144,14 +148,16 @@ def swivel(handling: Handling) -> Iterator[Verdict]:
             continue
         turning = next((beside for beside, has_swivel in ends if has_swivel), None)
         beside = turning or ends[0][0]
-        ending = f"{piece.label} is not torque-balanced and ends at {beside.label}"
+        wire = f"{piece.label} is not torque-balanced"
         if turning is not None:
-            yield verdict_on(piece, State.PASS, f"{ending}, but there is a swivel between them.")
+            message = f"{wire}, but there is a swivel between it and {beside.label}."
+            yield verdict_on(piece, State.PASS, message)
         else:
-            message = f"{ending}, which tilts in the current, and there is no swivel between them."
-            remedy = (
-                "Insert a swivel at this end of the wire, or use wire that is `torque_balanced`."
+            message = (
+                f"{wire}, and there is no swivel between it and {beside.label}, which tilts in the "
+                "current."
             )
+            remedy = "Insert a swivel between the two, or use wire that is `torque_balanced`."
             yield verdict_on(piece, State.WARN, message, remedy)
 
 
@@ -340,7 +346,7 @@ def _of_profiler(result: LegResult, row: ClampRow) -> Iterator[Verdict]:
     least = component.minimum_tension
     message = (
         f"Tension in {wire.label} at {part.label} is {say('load', row.tension)}; "
-        f"the profiler needs {say('load', least)} to travel."
+        f"the profiler needs at least {say('load', least)} to travel."
     )
     yield at_least(part, row.tension, least, message, "Add buoyancy above the wire.")
     yield from _path_obstacles(part, wire)
@@ -411,13 +417,13 @@ def _lift(part: JudgedPart, leg: Leg, density: float) -> float:
 
 def _verdict(part: JudgedPart, pull: float, when: str) -> Verdict:
     grip, breaking = part.component.grip, part.component.breaking_load
-    load = f"Load on the clamp of {part.label}{when} is {say('load', pull)}"
+    load = f"The load on the clamp of {part.label}{when} is {say('load', pull)}"
     if grip is not None:
-        message = f"{load}; its grip is {say('load', grip)}."
+        message = f"{load}; the grip of the clamp is {say('load', grip)}."
         return at_most(part, pull, grip, message, _HOLDS)
     if breaking is not None:
-        message = f"{load}; its breaking load is {say('load', breaking)}."
+        message = f"{load}; the breaking load of the clamp is {say('load', breaking)}."
         return at_most(part, pull, breaking, message, _HOLDS)
-    message = f"{load}; its `grip` is unknown."
+    message = f"{load}; the `grip` of the clamp is unknown."
     not_judged = verdict_on(part, State.NOT_JUDGED, message, value=pull)
     return not_judged.but(lacks=Lack(part.label, "grip"))

@@ -279,7 +279,7 @@ class Acceptance:
             elif not accept.counts_on(self.day):
                 yield f"{what} expired on {accept.until}"
             elif accept not in used:
-                yield f"{what} is not needed, because no such finding fails or is unknown"
+                yield f"{what} is not needed: it matches no finding that fails or is unknown"
 
 
 def _accepted(finding: Finding, accept: Accept) -> Finding:

@@ -168,7 +168,10 @@ def impossible(component: Component) -> Iterator[str]:
     if component.role == "float" and net < 0.0:
         yield f"has `role: float` but weighs {say('load', -net)} in water"
     if mass is not None and mass * STANDARD_GRAVITY < LIGHTEST_FLOAT * net:
-        yield f"weighs {mass:.4g} kg with a buoyancy of {say('load', net)}; no float is so light"
+        yield (
+            f"weighs {mass:.4g} kg and has a buoyancy of {say('load', net)}; no float with this "
+            "buoyancy is so light"
+        )
     if rating is not None and rating > DEEPEST_WATER:
         yield f"has a depth rating of {rating:.5g} m; the deepest sea is {DEEPEST_WATER:g} m deep"
     if isinstance(component, Cable):
@@ -179,7 +182,7 @@ def impossible(component: Component) -> Iterator[str]:
         if not 2.0 <= bars <= 5.0:  # open links weigh three to four bars, long ones two and a half
             yield (
                 f"weighs as much as {bars:.2g} steel bars of its diameter; a steel chain weighs "
-                "as much as 2 to 5"
+                "as much as 2 to 5 such bars"
             )
     elif (envelope := _envelope(component)) is not None:
         lift = CATALOGUE_DENSITY * STANDARD_GRAVITY * envelope
@@ -188,8 +191,8 @@ def impossible(component: Component) -> Iterator[str]:
             yield f"{has}; water of the same volume weighs only {say('load', lift)}"
         elif isinstance(component, Sphere) and 0.0 < net < LEAST_LIFT * lift:
             yield (
-                f"has a buoyancy of {say('load', net)}; a float with its diameter of "
-                f"{component.diameter:g} m has at least {say('load', LEAST_LIFT * lift)}"
+                f"has a buoyancy of {say('load', net)}; a float of this diameter, "
+                f"{component.diameter:g} m, has at least {say('load', LEAST_LIFT * lift)}"
             )
         elif mass is not None and _displaced(component, mass) > ROUNDING * lift:
             yield (
@@ -257,9 +260,9 @@ def _of_a_rope(rope: Cable) -> Iterator[str]:
         LOOSEST * lift <= _displaced(rope, rope.mass) <= NOMINAL * lift
     ):
         yield (
-            f"weighs {rope.mass:.4g} kg/m in air and {-net:.4g} N/m in water; the difference "
-            f"should be near {lift / ROPE_ROUNDING:.4g} N/m, the weight of the water that it "
-            "displaces"
+            f"weighs {rope.mass * STANDARD_GRAVITY:.4g} N/m in air and {-net:.4g} N/m in water; "
+            f"the difference should be near {lift / ROPE_ROUNDING:.4g} N/m, the weight of the "
+            "water that the rope displaces"
         )
     else:
         yield from density_out_of_bounds(rope)
@@ -340,7 +343,7 @@ def figures(handling: Handling) -> Iterator[Verdict]:
         if not key.backed:
             message = (
                 f"The line sets {key.name} to {limit_value_text(key, key.value)} without a source; "
-                f"{key.source} has {limit_value_text(key, key.default)}."
+                f"the value in {key.source} is {limit_value_text(key, key.default)}."
             )
             yield unknown(None, message, "Add its `source`, or remove the value.")
     remedy = "Check the values of the component and their units."

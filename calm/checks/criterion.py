@@ -76,10 +76,10 @@ class Criterion:
     words : function that takes the value (NaN if unknown) and the result, and returns message and
         remedy
     least : whether the limit is a lower limit
-    beyond : state if the limit is exceeded: fail or warn
+    beyond : state of the finding if the limit is exceeded, which is fail or warn
     silent : whether a value of NaN means that the criterion does not apply; otherwise NaN means
         that the value is unknown
-    source : source of the limit; "" for the source of the rule
+    source : source of the limit; if "", the source of the rule is given instead
     lacks : key of the missing component value, if `limit` is None
     figure : key of the component value that sets `limit`, for a rule that uses several; else ""
     stated : function that takes the value and the result, and returns value and limit of a more

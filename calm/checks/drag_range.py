@@ -11,7 +11,7 @@ from math import hypot
 from calm.case.design import Design
 from calm.case.leg_result import LegResult
 from calm.case.profilers import held
-from calm.case.warnings import fast_pieces, power_text
+from calm.case.warnings import fast_pieces, fast_text
 from calm.checks.finding import State, Verdict, rule, verdict_on
 from calm.errors import NoEquilibrium
 from calm.files import Piece
@@ -38,16 +38,11 @@ def drag_coefficient(results: Sequence[LegResult]) -> Iterator[_LegVerdict]:
     found = [(rows[0], result, rows) for result, rows in fast if rows]
     if not found:
         return
-    (row, limit), result, rows = max(found, key=lambda one: one[0][0].reynolds / one[0][1])
-    others = f" and {len(rows) - 1} more" if len(rows) > 1 else ""
-    message = (
-        f"The Reynolds number of {row.label}{others} is {power_text(row.reynolds)}; the drag "
-        f"coefficient is valid up to {power_text(limit)}."
-    )
+    (row, _), result, rows = max(found, key=lambda one: one[0][0].reynolds / one[0][1])
     effect, worse = _effect(result, {one.index for one, _ in rows})
     remedy = "Check the drag coefficient of this part."
     state = State.WARN if worse else State.NOT_JUDGED
-    yield result, verdict_on(row.part, state, f"{message}{effect}", remedy)
+    yield result, verdict_on(row.part, state, f"{fast_text(rows)}{effect}", remedy)
 
 
 def _effect(result: LegResult, fast: set[int]) -> tuple[str, bool]:
@@ -66,13 +61,16 @@ def _effect(result: LegResult, fast: set[int]) -> tuple[str, bool]:
     try:
         smooth = Design(other, result.leg.for_surface).solve().leg
     except NoEquilibrium as failure:
-        return f" With the drag curve of a smooth shape: {failure.status}.", True
+        text = (
+            f" With the drag curve of a smooth shape, CALM found no equilibrium: {failure.status}."
+        )
+        return text, True
     name, before, after = "offset", _offset(result), _offset(smooth)
     down, then = result.top.knockdown, smooth.top.knockdown
     if result.type != "surface" and down is not None and then is not None:
         name, before, after = "knockdown", down, then
     changed = f"{say(name, after)} instead of {say(name, before)}"
-    effect = f" With the drag curve of a smooth shape, the {name} is {changed}."
+    effect = f" With the drag curve of a smooth shape, the {name} would be {changed}."
     return effect, after > NOTICED * before
 
 

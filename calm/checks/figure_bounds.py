@@ -76,7 +76,10 @@ _CRISIS += "6.19), cylinder 0.2 (Roshko 1961, Journal of Fluid Mechanics 10, 345
 _STRUMMING = (
     "1.2 for a cylinder at rest, 2.5 times as much if it vibrates (Griffin 1985, ASME OMAE)"
 )
-_CHAIN = "2.4 to 2.6 with the bar diameter (OrcaFlex manual, Chain); bounds: half and twice that"
+_CHAIN = (
+    "2.4 to 2.6, based on the bar diameter (OrcaFlex manual, Chain); the bounds are about half "
+    "and twice these values"
+)
 
 DRAG_BOUNDS = {
     ("sphere", "cx"): Bounds(0.06, 2.0, _CRISIS),

@@ -51,7 +51,8 @@ def backup(handling: Handling) -> Iterator[Verdict]:
     if handling.leg.file.release is None:
         if is_hauled_in(handling):
             message = (
-                "A line without a release is hauled in: pieces below a break stay on the seabed."
+                "A line without a release is hauled in; if it breaks, the pieces below the break "
+                "stay on the seabed."
             )
             yield verdict_on(None, State.NOT_JUDGED, message)
             return
@@ -150,8 +151,8 @@ def launch_speed(handling: Handling) -> Iterator[Verdict]:
     anchor, speed = handling.leg.file.pieces[-1], launch.fall_speed
     slow, fast = (QUANTITIES["speed"].format(one) for one in launch.fall_speed_band)
     message = (
-        f"Touchdown speed of the anchor is {say('speed', speed)} ({slow} to {fast} with twice and "
-        f"half the drag); the limit is {GREATEST_TOUCHDOWN_SPEED:g} m/s."
+        f"Touchdown speed of the anchor is {say('speed', speed)} ({slow} to {fast} if the drag is "
+        f"doubled or halved); the limit is {GREATEST_TOUCHDOWN_SPEED:g} m/s."
     )
     remedy = "Lower the anchor, or add drag with a parachute or a wider anchor."
     if launch.anchor_drag_known:
@@ -159,8 +160,8 @@ def launch_speed(handling: Handling) -> Iterator[Verdict]:
         yield at_most(anchor, speed, limit, message, remedy, State.WARN)
         return
     message += (
-        " The drag of the anchor is unknown and assumed to be that of a cube of its volume; "
-        f"without it, the speed is {say('speed', launch.greatest_speed)}."
+        " The drag of the anchor is unknown; CALM uses the drag of a cube with the same volume. "
+        f"Without any anchor drag, the speed would be {say('speed', launch.greatest_speed)}."
     )
     if launch.greatest_speed <= GREATEST_TOUCHDOWN_SPEED:
         yield at_most(anchor, speed, GREATEST_TOUCHDOWN_SPEED, message, remedy, State.WARN)
@@ -189,10 +190,12 @@ def recovery(handling: Handling) -> Iterator[Verdict]:
     speed, rises = rise.rise_speed, "does not rise"
     if speed > 0.0:
         rises = f"rises at {say('speed', speed)}"
-    message = f"Released below {lowest.label}, the line {rises}; "
+    message = f"After release below {lowest.label}, the line {rises}; "
     still = ""
     if rise.in_still_water:
-        still = " This is the speed in still water, as no steady ascent was found in the current."
+        still = (
+            " This is the speed in still water, because no steady ascent was found in the current."
+        )
     remedy = "Add buoyancy above the release, or remove weight."
     source = cited(handling.leg.file, "minimum_rise_speed")
     if limit <= speed < USUAL_RISE_SPEED:

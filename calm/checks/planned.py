@@ -169,8 +169,8 @@ def _remedy(result: LegResult, parts: Sequence[PlannedPart], number: int) -> str
             return f"Check the {what} between {first.row.label} and {second.row.label}."
         last = part
     if above:
-        return f"Check the lengths above {last.row.label}, and its planned depth."
-    return f"Check the lengths below {last.row.label}, `depth`, and its planned depth."
+        return f"Check the planned depth of {last.row.label}, and the lengths above it."
+    return f"Check `depth`, the planned depth of {last.row.label}, and the lengths below it."
 
 
 def _hangs_from_above(result: LegResult, part: PlannedPart) -> bool:

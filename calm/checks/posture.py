@@ -175,9 +175,10 @@ def stretch(result: LegResult) -> Iterator[Verdict]:
             what = "its working load" if component.working_load else "a fifth of its breaking load"
             message = (
                 f"{piece.label} is to be cut to length under a load of "
-                f"{say('load', piece.measured_load)}; this exceeds {what}, {say('load', bears)}."
+                f"{say('load', piece.measured_load)}; this load exceeds {what}, "
+                f"{say('load', bears)}."
             )
-            remedy = "Check the load of its `length_at`: ropes are measured under a small load."
+            remedy = "Check the load in `length_at`; ropes are measured under a small load."
             yield verdict_on(piece, State.WARN, message, remedy)
 
 
@@ -233,7 +234,10 @@ def fish_bite(result: LegResult) -> Iterator[Verdict]:
                 f"{piece.label} begins at {say('depth', highest)}; rope above "
                 f"{say('depth', limit)} is exposed to fish bite."
             )
-            remedy = "Use jacketed wire above that depth, or set the `fishbite_depth` of the site."
+            remedy = (
+                f"Use jacketed wire above {say('depth', limit)}, or set the `fishbite_depth` of "
+                "the site."
+            )
             source = cited(result.file, "fishbite_depth")
             yield at_least(piece, highest, limit, message, remedy, State.WARN, source)
 
@@ -250,7 +254,8 @@ def knockdown(leg: Leg) -> Iterator[Criterion]:
             )
         return (
             f"Knockdown of the top is {say('knockdown', sunk)}; the limit is {allowed}.",
-            "Add buoyancy at the top, or reduce drag (`calm run --explain` shows its sources).",
+            "Add buoyancy at the top, or reduce drag (`calm run --explain` shows the effect of "
+            "each part).",
         )
 
     yield from _of_the_top(leg, "knockdown", leg.file.checks.maximum_knockdown, words)
@@ -301,7 +306,7 @@ def reserve(leg: Leg) -> Iterator[Criterion]:
             )
         return (
             f"{message}; at least {100 * limit:.0f} % is required.",
-            "Use a larger float, a lighter line, or more length." + _too_long(leg),
+            "Use a larger float, or a lighter or longer line." + _too_long(leg),
         )
 
     source = cited(leg.file, "minimum_reserve")

@@ -70,7 +70,7 @@ def _repeated_serials(parts: Sequence[Part]) -> Iterator[Verdict]:
             names = " and ".join(one.label for one in found[:2])
             yield _warning(
                 found[0],
-                f"{names} have the same serial number, {serial} of {use}.",
+                f"{names} are both {use} and have the same serial number, {serial}.",
                 "Check both serial numbers.",
             )
 
@@ -101,13 +101,13 @@ def _days_of_parts(parts: Sequence[Part], file: MooringFile) -> Iterator[Verdict
             yield _warning(part, message, "Check both dates, or replace the battery.")
         if battery and calibrated and battery <= calibrated:
             message = (
-                f"The battery of {part.label} runs out on {battery}, not after its calibration on "
+                f"The battery of {part.label} runs out on {battery}, but the part was calibrated "
+                f"on {calibrated}."
             )
-            message += f"{calibrated}."
             yield _warning(part, message, "Check both dates.")
         if calibrated and deployed and calibrated > deployed:
             message = (
-                f"The calibration of {part.label}, on {calibrated}, is after its deployment on "
+                f"The calibration date of {part.label}, {calibrated}, is after the deployment on "
             )
             message += f"{deployed}."
             remedy = "Check both dates: this may be the calibration after recovery."
@@ -121,8 +121,8 @@ def _document(document: DocumentKeys) -> Iterator[str]:
     for earlier, later in pairwise(dated):
         if (later.date or "") < (earlier.date or ""):
             yield (
-                f"Revision {later.revision} is dated {later.date}, before the preceding revision "
-                f"{earlier.revision}, dated {earlier.date}."
+                f"Revision {later.revision} is dated {later.date}, but the preceding revision "
+                f"{earlier.revision} has a later date, {earlier.date}."
             )
     names = [one.revision for one in history]
     for name in dict.fromkeys(one for one in names if names.count(one) > 1):
@@ -136,8 +136,8 @@ def _document(document: DocumentKeys) -> Iterator[str]:
         )
     elif document.date and dated and document.date < (dated[-1].date or ""):
         yield (
-            f"The document is dated {document.date}, before its revision {dated[-1].revision} of "
-            f"{dated[-1].date}."
+            f"The document is dated {document.date}, but its revision {dated[-1].revision} has a "
+            f"later date, {dated[-1].date}."
         )
 
 

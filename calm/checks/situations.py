@@ -268,14 +268,14 @@ def deployed_depth(handling: Handling) -> Iterator[Verdict]:
     longer = float(deployed.line.length.sum() - leg.line.length.sum())
     fixed, share = SOUNDING
     limit = hypot(fixed, share * designed)
-    moved, what = depth - designed - longer, "the top of the upright line"
+    moved, what = depth - designed - longer, "The top of the upright line"
     if reaches_the_surface(leg):
-        moved, what = depth - designed, "the water"
+        moved, what = depth - designed, "The water"
     direction = "deeper" if moved > 0.0 else "shallower"
     message = (
-        f"Deployed in {say('depth', depth)} of water instead of {say('depth', designed)}: "
-        f"{what} is {say('depth', abs(moved))} {direction} than designed; a sounding may be in "
-        f"error by {say('depth', limit)}."
+        f"The mooring was deployed in {say('depth', depth)} of water instead of "
+        f"{say('depth', designed)}. {what} is {say('depth', abs(moved))} {direction} than "
+        f"designed; the limit, the error of a sounding, is {say('depth', limit)}."
     )
     remedy = "Run `calm diff` on this file to see the effect."
     yield at_most(None, abs(moved), limit, message, remedy, State.WARN)
@@ -299,8 +299,8 @@ def _far_away(leg: Leg) -> Verdict | None:
     if away <= _ANOTHER_SITE:
         return None
     message = (
-        f"Deployed {away:.0f} km from the planned position: the water depth and currents of the "
-        "design may not apply there."
+        f"The mooring was deployed {away:.0f} km from the planned position; the water depth and "
+        "currents of the design may not apply there."
     )
     remedy = "Check both positions, or use the environment of the site."
     return verdict_on(None, State.UNKNOWN, message, remedy)
@@ -378,8 +378,8 @@ def currents(legs: Sequence[Leg]) -> Iterator[tuple[Leg, Verdict]]:
         limit = SHARE_OF_ITS_RECORD * recorded
         if speed < limit:
             message = (
-                f"The record behind this current reaches {say('speed', recorded)}; "
-                f"the strongest current checked is {say('speed', speed)}."
+                "The strongest current in the record from which this profile was taken is "
+                f"{say('speed', recorded)}; the strongest current checked is {say('speed', speed)}."
             )
             remedy = "Add an environment with that current, or run `calm batch` on the record."
             yield leg, at_least(None, speed, limit, message, remedy, State.WARN)
@@ -387,7 +387,9 @@ def currents(legs: Sequence[Leg]) -> Iterator[tuple[Leg, Verdict]]:
         return
     message = f"The strongest current checked is {say('speed', speed)}"
     if speed < USUAL_CURRENT:
-        message += f"; a wind of 7 m/s alone drives {say('speed', USUAL_CURRENT)} at the surface"
+        message += (
+            f"; a wind of 7 m/s alone drives a surface current of {say('speed', USUAL_CURRENT)}"
+        )
     remedy = "Add an environment with the strongest current of the site."
     yield (
         legs[strongest],

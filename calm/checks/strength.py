@@ -385,8 +385,8 @@ def anchor_sliding(leg: Leg) -> Iterator[Criterion]:
         holds = f"a friction coefficient of {friction:.4g}{down} holds {say('load', holding)}"
         if holding < 0.0:
             holds = (
-                "the vertical load times the factor exceeds the weight of the anchor, so nothing "
-                "holds it"
+                f"the vertical load times {factor:g} exceeds the anchor's weight in water, so "
+                "friction cannot hold the anchor"
             )
         return f"{load}; {holds}.", _heavier(leg, result.anchor_load.required_weight)
 

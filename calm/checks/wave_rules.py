@@ -83,7 +83,7 @@ def wave_strength(evidence: MooringInWaves) -> Iterator[Verdict]:
                 yield unknown(piece, message, remedy, tension, lacks=lacks)
             continue
         message = f"{load}; the limit is {say('load', limit)}.{_measured(row, 'greatest')}"
-        remedy = "Use a stronger component, or add stretch to the line."
+        remedy = "Use a stronger component, or a more elastic line."
         figure = governing_load(piece.component, 1.0, factor)
         verdict = at_most(piece, tension, limit, message, remedy, source=source, figure=figure)
         yield _sure(waves, verdict)
@@ -107,7 +107,10 @@ def wave_slack(evidence: MooringInWaves) -> Iterator[Verdict]:
                 f"{state.sea.significant_height:.1f} m is {say('load', row.least)}; below zero "
                 f"the line goes slack and snap loads follow.{_measured(row, 'least')}"
             )
-            remedy = "Add weight or stretch, or simulate it in the time domain (`calm export`)."
+            remedy = (
+                "Add weight, use a more elastic line, or simulate the mooring in the time domain "
+                "(`calm export`)."
+            )
             yield _sure(waves, at_least(piece, row.least, 0.0, message, remedy))
 
 
@@ -133,7 +136,7 @@ def fatigue(evidence: MooringInWaves) -> Iterator[Verdict]:
         if one.unknown is not None:
             message = f"The fatigue life of {one.label} is unknown: {one.unknown}."
             yield unknown(
-                piece, message, "Set the `curve` under `fatigue` of the component, and its loads."
+                piece, message, "Set the component's loads, and the `curve` under its `fatigue`."
             )
         elif one.life is not None and one.life_low is not None and one.life_high is not None:
             message = (
@@ -142,7 +145,7 @@ def fatigue(evidence: MooringInWaves) -> Iterator[Verdict]:
                 "required."
             )
             remedy = (
-                "Use a thicker component, add stretch to the line, or renew the component sooner."
+                "Use a thicker component or a more elastic line, or renew the component sooner."
             )
             life = one.life * YEAR
             yield _sure(waves, at_least(piece, life, limit, message, remedy, source=source))

@@ -44,8 +44,9 @@ def batch(
 
     Each profile replaces the current in the file. The result has values for every
     component and every clamped instrument at each time step. For a profile without
-    equilibrium, these values are NaN, and the status gives the reason. Statistics are
-    printed, and written to RESULT.summary.json and RESULT.summary.html.
+    equilibrium, these values are NaN, and the status gives the reason. Statistics
+    are printed, and are also written to RESULT.summary.json and
+    RESULT.summary.html.
 
     The result is written completely or not at all. After an interruption, run the
     command again from the beginning.

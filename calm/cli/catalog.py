@@ -93,9 +93,8 @@ def show_components(ids: list[str], /, *, json: bool = False) -> ExitCode:
     """Show all values of components with their sources, and derived values.
 
     Derived values are the net force in water, and the drag at 1 m/s across the
-    axis (Kn) and along the axis (Kt).
-    Entries for the same item from different sources are shown side by side, the
-    recommended one first.
+    axis (Kn) and along the axis (Kt). Entries for the same item from different
+    sources are shown side by side, with the recommended entry first.
 
     Parameters
     ----------
@@ -135,8 +134,8 @@ def add(
     Parameters
     ----------
     id
-        Id of the component: lower-case letters, digits and hyphens. It overrides a catalogue entry
-        with the same id.
+        Id of the component: lower-case letters, digits and hyphens. The component
+        replaces a catalogue entry with the same id.
     figures
         The `kind` and the values with their units, such as `diameter=432 mm`, in quotes if they
         contain a space. The manual's page on components lists the keys of each kind.

@@ -44,11 +44,12 @@ def check(
     """Check designs: solve each mooring in each environment and apply the design
     rules.
 
-    Each mooring is solved as given, in still water, with strumming cables and, if
-    its file requires it, at high and low water and with biofouling. CALM also
+    Each mooring is solved as given, in still water, and with strumming cables. If
+    the file has a tidal range, the mooring is also solved at high and low water; if
+    the file has biofouling, the mooring is also solved with biofouling. CALM also
     simulates an anchor-last deployment, the release, and a break at each
-    connection. The exit code is 1 if a rule fails or lacks a value, 3 if a
-    mooring has no equilibrium, and 0 otherwise.
+    connection. The exit code is 1 if a check fails or if a value that it needs is
+    missing, 3 if a mooring has no equilibrium, and 0 otherwise.
 
     Parameters
     ----------
@@ -59,8 +60,9 @@ def check(
         Write the findings as JSON (- for standard output): the governing finding of each rule, all
         findings that do not pass, and those with a utilisation of at least one half.
     report
-        Write report.html, report.pdf, report.json, checks.csv and inventory.csv in this folder: at
-        least five pages for one mooring; for several moorings, a matrix and one page each.
+        Write report.html, report.pdf, report.json, checks.csv and inventory.csv in this folder. The
+        report of one mooring has at least five pages; the report of several moorings has a matrix
+        of all moorings and a page for each.
     page
         Page size of the report.
     full
@@ -69,18 +71,18 @@ def check(
         Mooring file of an earlier design, with which the report compares the mooring. Requires
         --report.
     all_findings
-        Write all findings, for every piece and situation, to the JSON and checks.csv.
+        Write all findings, for every piece and situation, to the JSON file and to checks.csv.
     missing
-        Instead of the findings, print a block of YAML to fill in. It lists the missing values of
-        each component, with the rules that need them, and, as comments, estimated values and
-        masses in air.
+        Instead of the findings, print a YAML block in which you can fill in the missing values. The
+        block lists these values for each component, and the rules that need them. Estimated values
+        and masses in air are given as comments.
     output
         Write the block of --missing to this file.
     allow_unknown
         Ignore unknown findings in the exit code; the output stays the same.
     uncertainty
-        Report for each finding the probability of exceeding its limit, given the input
-        uncertainties under `uncertainty` in the file, and rank the designs by it.
+        Report for each finding the probability that the limit is exceeded, given the input
+        uncertainties under `uncertainty` in the file, and rank the designs by this probability.
     workers
         Number of processes; one per core by default.
 

@@ -36,8 +36,8 @@ def deck(
     list, hardware bill, shipping list, lifts, instrument sheet and, for
     anchor-last deployment, the anchor drop plan. The diagram is also written as
     diagram.pdf and diagram.svg, the lists as CSV files and as sheets of
-    deck.xlsx, and the plan as plan.json. A net is drawn as a whole (also as
-    net.svg) and listed leg by leg, without an anchor drop plan.
+    deck.xlsx, and the plan as plan.json. A net is drawn as a whole and listed leg
+    by leg; the drawing is also written as net.svg. A net has no anchor drop plan.
 
     Parameters
     ----------
@@ -47,9 +47,9 @@ def deck(
         Page size.
     environment
         Environment in which depths and lengths are computed: a name from the files, or an
-        environment file. Repeatable: the currents of any further environments are the design
-        currents. By default, depths and lengths are computed in the default environment of the
-        file, and the design currents are those of its named environments.
+        environment file. Repeatable: any further environments give the design currents. By default,
+        depths and lengths are computed in the default environment of the file, and its named
+        environments give the design currents.
     order
         Deployment order.
     ship_speed
@@ -57,7 +57,7 @@ def deck(
         anchor is released.
     streamed
         Horizontal distance from the anchor to the top float when the anchor is released. By default
-        CALM computes it for a line towed at --ship-speed.
+        CALM computes this distance for a line that is towed at --ship-speed.
     course
         Course over the ground while the line is towed out. By default the ship steams against the
         surface current.
@@ -113,8 +113,8 @@ def _write(folder: Path, path: Path, deck: Deck, page_size: PageSize) -> None:
         narrate(f"{path}: {note}")
     if isinstance(deck.plan, DropPlan) and deck.plan.start is None:
         narrate(
-            f"{path}: the position where the run to the target starts is not computed; set "
-            "`deck_time` (handling time per piece, by role) in the `document` section of the file"
+            f"{path}: the start of the ship's run to the target is not computed; set `deck_time` "
+            "(handling time per piece, by role) in the `document` section of the file"
         )
     write_report(folder, _contents(deck, page_size, notes))
     narrate(f"Deck sheets written to {folder}")

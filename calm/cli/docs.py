@@ -91,10 +91,13 @@ def _list(words: str, texts: dict[str, Path], built: dict[str, Path]) -> None:
     most = -found[0][0]
     lines = [line for has, *_, line in found if has == -most]
     contain = "contain it" if most == len(wanted) else f"contain {most} of its {len(wanted)} words"
-    narrate(f"no page is called `{words}`; these {contain} (`calm docs NAME` prints the path):")
+    narrate(
+        f"no page is called `{words}`; these pages {contain} (`calm docs NAME` prints the path of "
+        "a page):"
+    )
     show("\n".join(lines[:MOST_PAGES]) + "\n")
     if len(lines) > MOST_PAGES:
-        narrate(f"and {len(lines) - MOST_PAGES} more pages")
+        narrate(f"further pages, not shown: {len(lines) - MOST_PAGES}")
 
 
 def _context(text: str, wanted: Sequence[re.Pattern[str]]) -> str:
@@ -147,8 +150,8 @@ def _open(name: str, texts: dict[str, Path], built: dict[str, Path]) -> None:
 
     if name not in built:
         raise UsageError(
-            f"the site is not part of this installation; the text of the page is {texts[name]}. "
+            f"the site is not part of this installation; the text of the page is in {texts[name]}. "
             "In a checkout, `python docs/make_site.py` builds the site"
         )
     if not webbrowser.open(built[name].as_uri()):
-        raise UsageError(f"no browser could be opened; the page is {built[name]}")
+        raise UsageError(f"no browser could be opened; the page is in {built[name]}")

@@ -21,7 +21,8 @@ def export(
     """Write a mooring or a tow for another program.
 
     Features that the other program cannot represent are reported and listed at
-    the top of the file. A fitted piece is exported with its cut length.
+    the top of the file. A piece with `length: fit` is exported with the length that
+    CALM computes for it.
 
     Parameters
     ----------

@@ -30,11 +30,11 @@ def grid(
     """Map temperature, salinity and velocity from moving instruments onto fixed
     levels.
 
-    The method is a Gaussian process over depth and time, whose scales are
-    estimated from the record. Each value has a standard deviation, which includes
-    the sensor error, the depth error times the local gradient, and the gap
-    between sensors. Each value has a flag. Flag 8 marks a value between sensors at
-    that time. Flag 3 marks a value beyond the sensors, or a value that the data
+    The method is a Gaussian process over depth and time. Its scales are estimated
+    from the record. Each value has a standard deviation, which includes the sensor
+    error, the depth error times the local gradient, and the error of interpolation
+    between sensors. Each value has a flag. Flag 8 marks a value between the sensors
+    at that time. Flag 3 marks a value beyond the sensors, or a value that the data
     constrain poorly. Flag 9 marks a missing value.
 
     Parameters

@@ -50,15 +50,15 @@ def import_(
     strict
         Reject files with missing values that CALM would have to guess.
     define
-        Set a macro of WHOI Cable, as NAME=VALUE, or the catalogue id for an oceanarray name, as
-        "NAME=ID". Repeatable.
+        For WHOI Cable files: set a macro, NAME=VALUE. For oceanarray files: set the catalogue id of
+        a name, "NAME=ID". Repeatable.
     environment
         Use this environment file instead of the environment in the imported file.
     onto
-        A mooring file. FILE is then a list of instruments with serial number, name, nominal depth
-        and clock offset (CSV, RODB's info.dat, oceanarray, or NetCDF). Its instruments are assigned
-        to the line of the mooring, and OUTPUT is a copy of the mooring file with the serial numbers
-        in `deployed:`.
+        A mooring file to whose line the instruments in FILE are assigned. FILE is then a list of
+        instruments with serial number, name, nominal depth and clock offset (CSV, RODB's info.dat,
+        oceanarray, or NetCDF), and OUTPUT is a copy of the mooring file with the serial numbers in
+        `deployed:`.
     columns
         Headings of the columns of a table, each as KEY=HEADING, such as name=Item,length=Len.
     sheet

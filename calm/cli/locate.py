@@ -34,12 +34,12 @@ def locate(
     """Locate an anchor from ship-to-release acoustic ranges.
 
     Outliers are reported, and rejected if enough ranges remain. The result is the
-    position with its 95 % ellipse and the depth with its interval; CALM warns if
-    the ship's positions constrain this result poorly. If two positions fit, both
-    are reported, the more likely one first. The likelihood depends on the fit and
-    on the distance from the planned position, relative to the usual fallback of
-    an anchor. The exit code is 1 if both remain possible. Acoustic rays are
-    assumed to be straight.
+    position with its 95 % ellipse and the depth with its 95 % interval. CALM warns
+    if the ship's positions constrain the result poorly. If two positions fit, both
+    are reported. CALM chooses the more likely one: its ranges fit better, or it is
+    closer to the planned position, allowing for the usual fallback of an anchor.
+    If CALM cannot choose, the exit code is 1. Acoustic rays are assumed to be
+    straight.
 
     Parameters
     ----------
@@ -57,13 +57,13 @@ def locate(
     above_seabed
         Height of the transponder (usually the release) above the seabed.
     plot
-        Draw the ranges as circles about the ship's positions, and the anchor position found, to
-        this .png, .svg or .pdf file.
+        Draw the anchor position, and the ranges as circles about the ship's positions, in this
+        .png, .svg or .pdf file.
     json
         Write the position as JSON (- for standard output).
     near
-        Planned latitude and longitude of the anchor, used to weight two possible positions; by
-        default, the planned position in the file of --update.
+        Planned latitude and longitude of the anchor, used to choose between two positions that
+        fit; by default, the planned position in the file of --update.
     hemisphere
         Hemispheres of positions that have neither letter nor sign, such as S,W.
     update
@@ -140,7 +140,7 @@ def locate(
         return ExitCode.FINDING
     working, text = edited
     lost = working.save(text)
-    narrate(f"{update}: `deployed:` now has position and depth" + (f"; {lost}" if lost else ""))
+    narrate(f"{update}: `deployed:` now has a position and a depth" + (f"; {lost}" if lost else ""))
     return ExitCode.DONE
 
 

@@ -51,11 +51,11 @@ def motion(
 
     CALM computes the shape of the line in the measured currents. From the
     pressures, it estimates the drag for the whole record, and corrects the
-    current at each time step. The result has the depth of every component and clamped
-    instrument with its standard deviation, and the residuals of the sensors. A
-    current meter on the line is matched by its label, and its position is taken
-    from the mooring file. If no current record is given, the currents are
-    inferred from the pressures of two or more sensors.
+    current at each time step. The result has the depth of every component and
+    clamped instrument with its standard deviation, and the residuals of the
+    sensors. A current meter on the line is matched by its label, and its position
+    is taken from the mooring file. If no current record is given, the currents
+    are inferred from the pressures of two or more sensors.
 
     Parameters
     ----------
@@ -79,9 +79,9 @@ def motion(
     cross_validate
         Withhold each sensor in turn, and compare its measured depths with the estimate.
     correct
-        Faults to correct in faulty sensors, separated by commas: clock, gain, offset, drift; or
-        air, for pressures that include the air pressure. The history attribute of the output lists
-        the corrections.
+        Faults to correct in faulty sensors, separated by commas: clock, gain, offset, drift, and
+        air (pressures that include the air pressure). The history attribute of the output lists the
+        corrections.
     sea_level
         Height of the sea surface over time: NetCDF, or CSV with time,level[m].
     flags

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 CatalogFiles = Annotated[
     list[Path] | None,
     Parameter(
-        help="Additional catalogue file; its components override those of the same id. Repeatable."
+        help="Additional catalogue file; its components replace those with the same id. Repeatable."
     ),
 ]
 MooringPath = Annotated[Path, Parameter(help="Mooring file.")]
@@ -50,8 +50,8 @@ Signed = Annotated[str | None, Parameter(allow_leading_hyphen=True)]
 Units = Annotated[
     str | None,
     Parameter(
-        help="Units of tables and reports, such as force=kgf,length=ft,speed=kn,mass=lb, "
-        "instead of those of the file; JSON, CSV and NetCDF are always in SI."
+        help="Units for tables and reports, such as force=kgf,length=ft,speed=kn,mass=lb; by "
+        "default, the units set in the file. JSON, CSV and NetCDF are always in SI."
     ),
 ]
 

@@ -23,9 +23,9 @@ def page(
     output
         Folder for the page.
     runtime
-        Folder with a release of Pyodide and with xterm.js and xterm.css, which is copied into the
-        page so that it needs no other server. By default the page loads these files from the
-        internet.
+        Folder that contains a release of Pyodide, xterm.js and xterm.css. These files are copied
+        into the folder of the page, so that the page needs no other server. By default the page
+        loads them from the internet.
 
     Examples
     --------

@@ -50,25 +50,26 @@ def run(
 ) -> ExitCode:
     """Solve moorings, tows and nets of legs, and print the table of each line.
 
-    All files are read first. If any has mistakes, they are listed and nothing is
-    solved. Error messages go to standard error.
+    All files are read first. If a file has mistakes, all mistakes are listed and
+    nothing is solved. Error messages go to standard error.
 
     Parameters
     ----------
     files
         Mooring files. A file with `tow:` describes a tow, a file with `legs:` a net.
     output
-        Write the result to this file, in the format of its suffix. Repeatable. One file holds all
-        moorings in .json and in .csv, which has a row per component or, with --speeds, a row per
-        speed. Each mooring gets its own file (for several moorings, p.svg becomes p-FILE.svg) in
-        .svg and .png (a drawing of the line), .html and .pdf (a report with table, drawings and
-        inputs), and .nc (NetCDF with the variable names of `calm batch`).
+        Write the result to this file, in the format of its suffix. Repeatable. All moorings are
+        written to a single .json or .csv file. The .csv file has a row per component or, with
+        --speeds, a row per speed. In the other formats, each mooring gets its own file; for several
+        moorings, p.svg becomes p-FILE.svg. The formats .svg and .png give a drawing of the line,
+        .html and .pdf a report with table, drawings and inputs, and .nc a NetCDF file with the
+        variable names of `calm batch`.
     json
         Print the result as JSON instead of the table; several files give an array.
     speeds
         Solve tows at the speeds from A to B in steps of STEP, and print a row for each
-        speed; -o draws depth, layback and tension against speed. A speed without
-        equilibrium has a row with its status, and the exit code is then 3.
+        speed; -o draws depth, layback and tension against speed. If there is no equilibrium
+        at a speed, its row has only the status, and the exit code is 3.
     explain
         Show the contribution of each drag force to the knockdown, and the effect of
         more buoyancy, less drag, and more or less current. Also applies to --json. Not for tows.

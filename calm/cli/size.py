@@ -25,8 +25,8 @@ def size(
 ) -> ExitCode:
     r"""Find the smallest change of a mooring that meets a target.
 
-    The changed mooring is solved as in calm run. A change of buoyancy does not
-    affect size and drag. If the target cannot be met, the exit code is 3, and the
+    The changed mooring is solved as in calm run. A change of buoyancy leaves size
+    and drag unchanged. If the target cannot be met, the exit code is 3, and the
     reason and the nearest value are reported.
 
     Parameters
@@ -37,11 +37,11 @@ def size(
         Condition to meet: a quantity of a part of the line, then <=, >= or =, then a limit with its
         unit.
     change
-        Value to change, written LABEL.buoyancy, LABEL.length or LABEL.count. A label without its
-        number stands for all pieces with that label.
+        Value to change, written LABEL.buoyancy, LABEL.length or LABEL.count. A label without a
+        number, such as glass, stands for glass 1, glass 2 and so on.
     between
-        Smallest and largest value to try, with units. By default a buoyancy may be 0 to 100 times
-        its present value, a length at most twice the water depth, and a count at most 1000.
+        Smallest and largest value to try, with units. By default CALM tries a buoyancy of 0 to 100
+        times its present value, lengths up to twice the water depth, and counts up to 1000.
 
     Examples
     --------
@@ -54,8 +54,9 @@ def size(
       calm size mooring.yaml --target "required_weight <= 8 kN" \
           --change "top float.buoyancy" --json -
 
-    A target limits the knockdown, depth, excursion, tilt or tension of a label or
-    of top, or the required_weight of the anchor; in a net, write
+    A target limits the knockdown, depth, excursion, tilt or tension of one part,
+    which is given by its label or as `top`. A target can also limit the weight
+    required of the anchor: write required_weight or, in a net,
     required_weight(LEG).
     """
     outputs = Outputs((file,), json)

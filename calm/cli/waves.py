@@ -30,12 +30,12 @@ def waves(
     report: Path | None = None,
     units: options.Units = None,
 ) -> ExitCode:
-    """Estimate tensions and motions of a mooring in waves, about its equilibrium.
+    """Estimate the tensions and motions of a mooring in waves.
 
     The model is linear: it computes small motions about the shape in the mean
-    current, with drag linearised for equal dissipation. A linear model is not
-    valid if a piece goes slack; the status is then slack-in-waves, and the exit
-    code is 3.
+    current. The linear drag dissipates the same power as the quadratic drag. A
+    linear model is not valid if a piece goes slack; the status is then
+    slack-in-waves, and the exit code is 3.
     Without --hs, --scatter or a file for --spectrum, CALM uses the sea states
     under `waves:` in the environment, which may also specify a swell and a
     peakedness.
@@ -46,8 +46,8 @@ def waves(
         Significant wave height, such as "5 m".
     tp
         Peak period, such as "8.4 s", which is about 1.41 times the mean zero-crossing
-        period Tz. For pierson-moskowitz the default is that of a fully developed sea;
-        ochi-hubble does not use it.
+        period Tz. For the spectrum pierson-moskowitz, the default is the peak period of
+        a fully developed sea; the spectrum ochi-hubble does not use a peak period.
     spectrum
         Wave spectrum: bretschneider, jonswap, pierson-moskowitz, ochi-hubble (swell and sea), or a
         file with a measured spectrum: CSV with frequency[Hz],density[m^2/Hz], or NetCDF.
@@ -103,8 +103,8 @@ def waves(
         return ExitCode.DONE
     narrate(
         f"{file}: {SLACK}: the line goes slack, so the linear tensions are not "
-        "valid. Add weight or stretch to the line, or solve it in the time domain: "
-        "`calm export --to moordyn`."
+        "valid. Add weight, use a more elastic line, or simulate the mooring in the time domain "
+        "(`calm export --to moordyn`)."
     )
     return ExitCode.NO_EQUILIBRIUM
 

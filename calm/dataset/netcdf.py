@@ -186,8 +186,11 @@ def _text(value: str | float) -> str | float | np.bytes_:
 
 Attributes = dict[str, Any]
 
-PIECES, CLAMPS = "piece of the line, from its top", "clamped instrument, down the line"
-"""Descriptions of the labels along the dimensions `component` and `clamp`."""
+PIECES = "piece of the line, in order from the top"
+"""Description of the labels along the dimension `component`."""
+
+CLAMPS = "clamped instrument, in order from the top"
+"""Description of the labels along the dimension `clamp`."""
 
 NUMBER = "<f4"
 """Data type of depths, offsets, forces and angles for many profiles; without an equilibrium they
@@ -219,7 +222,7 @@ def of_net(
     for one in variables:
         text = str(one.attributes.get("long_name", "")).replace("of the anchor,", "of the origin,")
         found.append(replace(one, attributes={**one.attributes, "long_name": text}))
-    meaning = "name of the leg, a line from its upper to its lower end"
+    meaning = "name of the leg, whose parts are in order from its upper end"
     found.append(labels("leg_label", "leg", names, meaning))
     for part, legs in (("component", components), ("clamp", clamps), ("node", nodes)):
         index_attributes = {
@@ -329,8 +332,8 @@ def down_the_line(sizes: Mapping[str, int]) -> list[Variable]:
     return [
         Variable(
             name, (name,), "<i4",
-            {"long_name": f"number of the {name} down the line (the first is 0)", "units": "1",
-             "axis": "Z", "positive": "down"},
+            {"long_name": f"number of the {name}, counted down the line (the first is 0)",
+             "units": "1", "axis": "Z", "positive": "down"},
             np.arange(sizes[name], dtype=np.int32),
         )
         for name in ("component", "clamp", "node", "sensor", "level")

@@ -256,7 +256,7 @@ def _against_corrosion(legs: Sequence[Sequence[DeckItem]]) -> Iterator[Stock]:
         basis = "one for each contact of dissimilar metals"
         yield Stock("isolators", "", name, count, basis=basis)
     for use, count in Counter({base.label: base.use for base, _ in contacts}.values()).items():
-        basis = "one for each piece of the less noble metal"
+        basis = "one for each piece in contact with a nobler metal"
         yield Stock("anodes", use, f"anode on {use}", count, basis=basis)
 
 

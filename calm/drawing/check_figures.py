@@ -50,10 +50,10 @@ class DrawnCase:
 
 @dataclass(frozen=True)
 class Label:
-    """A label next to the line: a part, the text of the label, and the depth of the part as text.
+    """A label that is drawn next to the line, with its part, its text, and the depth as text.
 
     `at` is the depth of the part and its position to the east and north [m]; None for a cable.
-    `tag` is the mark and the number of the open finding on the part.
+    `tag` holds the mark of the open finding on this part, and the number of this finding.
     """
 
     part: ShownPart

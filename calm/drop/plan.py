@@ -136,14 +136,14 @@ class DropPlan:
             )
         elif self.rest_difference > REST_TOLERANCE * self.mooring.water.depth:
             texts.append(
-                f"The line settles {self.rest_difference:.2f} m from its equilibrium, more than a "
-                "thousandth of the depth. The depths of instruments are not shown, and the results "
-                "of the fall are uncertain."
+                f"The line settles {self.rest_difference:.2f} m from its equilibrium, and the "
+                "distance exceeds a thousandth of the depth. The depths of instruments are not "
+                "shown, and the results of the fall are uncertain."
             )
         if self.fall_time < SHORT_FALL:
             texts.append(
-                f"The fall takes only {self.fall_time:.0f} s. Inertia is neglected; it may add "
-                "half a second and change the fall-back by a metre."
+                f"The fall takes only {self.fall_time:.0f} s. Inertia is neglected; inertia may "
+                "add half a second and change the fall-back by a metre."
             )
         if self.mooring.line.strumming is not None:
             texts.append(

@@ -35,10 +35,12 @@ def secure_anchors(design: model.ImportedDesign, output: Path) -> None:
             continue
         anchor.figures.pop("mass", None)
         anchor.guesses.pop("mass", None)
-        reason = "the file has no anchor weight; 1.5 × (V + H/0.6) in this current is used"
+        reason = (
+            "the file has no anchor weight; `calm check` requires this weight in the file's current"
+        )
         anchor.figures["weight"] = rounded(max(required, _LEAST), _DIGITS, up=True)
         if pull is None:
-            reason = "the file has no anchor weight; a weight that holds any line is used"
+            reason = "the file has no anchor weight; this weight is large enough for any line"
             anchor.figures["weight"] = _HOLDS
         elif given is not None:
             reason = (

@@ -18,7 +18,8 @@ from calm.physics.line import Floats
 from calm.physics.seawater import REFERENCE_DENSITY
 
 AS_A_POINT = (
-    "the size and inclination of the float: it is a point with the force that CALM computed"
+    "the size and inclination of the float: the float is exported as a point, with the force that "
+    "CALM computed"
 )
 """Loss reported for a float that is exported by `ExportedLine.float_as_point`."""
 

@@ -211,10 +211,13 @@ def _omitted(leg: Leg) -> tuple[str, ...]:
     file = leg.file
     omitted = ["limits of the design check; strengths, depth ratings and tilt limits of components"]
     if file.solver.strumming is not None:
-        omitted.append("strumming: cables have their drag at rest")
+        omitted.append("strumming: the exported drag of cables does not include its effect")
     anchor = leg.bottom.anchor
     if file.environment.seabed is not None or (anchor is not None and anchor.depth is not None):
-        omitted.append("the slope of the seabed: it is level, at the depth of the deepest anchor")
+        omitted.append(
+            "the slope of the seabed: the exported seabed is level, at the depth of the deepest "
+            "anchor"
+        )
     if file.solver.drag == "reynolds":
         omitted.append("`drag: reynolds`: the constant coefficients are written")
     if file.solver.friction != "berteaux":

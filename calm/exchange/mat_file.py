@@ -204,7 +204,7 @@ def _spread(name: str, first: float, last: float, step: float) -> MatValue:
 def _shaped(name: str, array: RealArray, shape: list[int], *, order: str) -> MatValue:
     if int(np.prod(shape)) != array.size:
         size = "×".join(str(length) for length in shape)
-        raise ValueError(f"`{name}` should be {size} but has {array.size} numbers")
+        raise ValueError(f"`{name}` should have {size} numbers but has {array.size}")
     return array.reshape(shape, order="F" if order == "F" else "C")
 
 

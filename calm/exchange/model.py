@@ -156,8 +156,8 @@ class ImportedLeg:
     """A leg of a net.
 
     `items` are the pieces of the leg, from the upper end. `top` and `bottom` are the connections of
-    the two ends as written in a mooring file, such as ``{join: A}``. They are empty if the file
-    does not need them.
+    the two ends as written in a mooring file, such as ``{join: A}``. A connection is empty if the
+    file does not need it.
     """
 
     name: str
@@ -243,8 +243,8 @@ class ImportedDesign:
     heading : further keys of the mooring file, as text
     in_kilograms : whether the file gives forces in kilograms-force
     sunken : definition that replaces the uppermost component if the solution shows this component
-        to be submerged; None if the file states whether it is submerged
-    understood : how the file was interpreted, as a text; empty if its format leaves no choice
+        to be submerged; None if the file states whether the component is submerged
+    understood : how the file was interpreted, as a text; empty if the format leaves no choice
     """
 
     program: str
@@ -277,7 +277,7 @@ class ImportedDesign:
         self.items += items
 
     def components(self) -> Iterator[ImportedComponent]:
-        """Yield the component of each piece and those of its clamps, with repetitions."""
+        """Yield the components of all pieces and of their clamps, with repetitions."""
         for item in self.items:
             yield item.component
             for clamp in item.clamps:

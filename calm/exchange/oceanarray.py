@@ -1,9 +1,9 @@
 """Read a mooring configuration of oceanarray, a file `NAME.mooring.yaml`.
 
 In such a file, `inline` lists the pieces of the line and `clamp` the instruments clamped on it,
-both with heights above the seabed. Other values are mostly missing; they are read from an element
+both with heights above the seabed. The file lacks most other values, which are read from an element
 library or the catalogue. If no rope is listed between two pieces, CALM inserts a rope of the length
-that their heights require.
+that the heights of the pieces require.
 """
 
 import re
@@ -32,8 +32,8 @@ ROPE = "rope"
 """Name of the rope inserted between pieces."""
 # keys that may name a component
 _NAMES = ("component_id", "label", "hardware_type", "category", "instrument")
-_CLOSE = 0.05  # m between pieces that touch
-# relative difference, and difference in metres, allowed between heights: most are whole metres
+_CLOSE = 0.05  # m: maximum distance between pieces that touch
+# relative and absolute [m] tolerance of heights, most of which are given in whole metres
 _OFF, _ROUNDED = 0.02, 0.5
 _MARKS = re.compile(rb"^(clamp|inline|instruments) *:", re.M)
 # prefixes of the keys of a position, the most accurate first
@@ -65,9 +65,10 @@ def read_oceanarray(path: Path, options: model.ImportOptions) -> model.ImportedD
         reading.refuse((), "needs `waterdepth`")
     if not line:
         message = (
-            f"lists {len(beside)} instruments but no line; list floats, releases and anchor under"
+            f"lists {len(beside)} instruments but no line; list all parts of the line, including "
+            "floats, releases and anchor, under `inline`, each with `hab` or `length` and a name "
+            "in `label`"
         )
-        message += " `inline`, each with `hab` or `length` and a name in `label`"
         reading.refuse((), message)
     if len(line) + len(beside) > model.MOST_PIECES:
         reading.refuse((), f"has more than {model.MOST_PIECES} pieces")
@@ -210,7 +211,7 @@ class _Reading:
 
     def _entry(self, item: Any, place: _Location) -> _Entry | None:
         if not isinstance(item, dict):
-            self.refuse(place, "an item with keys is needed")
+            self.refuse(place, "a list item must have keys, such as `label`")
             return None
         words = [str(item[name]).strip() for name in _NAMES if item.get(name)]
         if not words:
@@ -245,13 +246,13 @@ class _Parts:
     def of(self, entry: _Entry) -> _Found | None:
         """Find the component of an item, and return it with a note on guesses.
 
-        Return None if there is none, which is recorded as a mistake.
+        If there is no such component, record a mistake and return None.
         """
         message = f"neither the library nor the catalogue has `{entry.names[0]}`"
         return self._named(entry.names, entry.instrument, entry.place, message)
 
     def rope(self, entry: _Entry, between: str) -> _Found | None:
-        """Find the rope that is inserted below an item, as `of` does."""
+        """Find the rope that is inserted below an item, and return it with a note on guesses."""
         return self._named((ROPE,), "", entry.place, f"no line is listed {between}")
 
     def _named(
@@ -308,7 +309,7 @@ class _Parts:
 class _Strung:
     """Pieces of a line from the anchor up, with heights of their lower ends [m].
 
-    The height is `nominal` in the file, and `height` as it follows from the lengths.
+    `nominal` are the heights in the file, and `height` are the heights computed from the lengths.
     """
 
     items: list[model.ImportedPiece]
@@ -319,7 +320,7 @@ class _Strung:
 def _strung(line: list[_Entry], parts: _Parts, design: model.ImportedDesign) -> _Strung:
     """Add the line to the design from the anchor up, with ropes inserted between pieces."""
     items: list[model.ImportedPiece] = []
-    nominal, height = [0.0], [0.0]  # lower ends; the last is for the next piece
+    nominal, height = [0.0], [0.0]  # lower ends; the last value is that of the next piece
     if not line[-1].is_anchor:
         items.append(
             model.ImportedPiece(model.ImportedComponent("anchor", "anchor", {"length": 0.0}))
@@ -358,12 +359,15 @@ def _strung(line: list[_Entry], parts: _Parts, design: model.ImportedDesign) -> 
                     add(piece, nominal[-1], gap)
             elif roped and abs(gap) > max(_OFF * roped, _ROUNDED):
                 message = (
-                    f"the lines below it are {roped:.6g} m long, but its height requires "
-                    f"{roped + gap:.6g} m"
+                    f"the lines below this piece are {roped:.6g} m long, but the height of the "
+                    f"piece requires {roped + gap:.6g} m"
                 )
                 design.guessed.append(model.Remark(entry.label, message))
             elif gap < -_CLOSE:
-                message = f"overlaps the piece below by {-gap:.3g} m and is moved to its top"
+                message = (
+                    f"overlaps the piece below by {-gap:.3g} m, and is moved up to the top of that "
+                    "piece"
+                )
                 design.guessed.append(model.Remark(entry.label, message))
                 lower = nominal[-1]
             at, below, roped = lower, f"`{entry.label}`", 0.0

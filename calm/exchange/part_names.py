@@ -39,11 +39,11 @@ _LONG, _SLENDER = 3.0, 60.0
 name.
 """
 
-_LONGEST_PIECE = 20.0  # m of a rigid piece
+_LONGEST_PIECE = 20.0  # m: maximum length of a rigid piece
 
 
 def is_called(name: str, *what: str) -> bool:
-    """True if a name is that of a part of one of the given kinds.
+    """True if a name denotes a part of one of the given kinds.
 
     The kinds are release, chain, connector (shackles, swivels, links), anchor, line (wires, ropes,
     chains) and rigid (floats, instruments and fittings, including names of product families).

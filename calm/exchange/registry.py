@@ -32,7 +32,7 @@ _OWN = {
     "csv": "calm.exchange.table",
 }
 """Built-in formats and their modules, in the order in which they are tried on a file. `table` is
-the last with a reader, because it accepts any text in columns.
+the last format with a reader, because `table` accepts any text in columns.
 """
 
 

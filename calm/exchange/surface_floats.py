@@ -1,4 +1,4 @@
-"""Decide whether the float of an imported design is at the surface, by a still-water solution."""
+"""Find whether the float of an imported design is at the surface, from a still-water solution."""
 
 from pathlib import Path
 

@@ -122,7 +122,7 @@ class Catalogue:
         return next(self._of(id), None)
 
     def hidden(self, id: str) -> CatalogueEntry | None:
-        """Return the second definition of an id, which the first hides; None if there is none."""
+        """Return the second definition of an id, which the first definition hides, or None."""
         return next(islice(self._of(id), 1, None), None)
 
     def _of(self, id: str) -> Iterator[CatalogueEntry]:
@@ -255,7 +255,7 @@ def _kinds() -> str:
 class CatalogueEntry:
     """Unvalidated definition of a component.
 
-    `family` is the name of its catalogue file if that is a known family, otherwise None.
+    `family` is the name of the catalogue file, or None if this name is not a known family.
     """
 
     id: str
@@ -283,8 +283,8 @@ class UnreadLevel(Level):
     """Entries of catalogue files; each entry is parsed when it is first used.
 
     At first, the files are only searched for ids, which are in unindented lines. All files are
-    parsed completely if an unindented line is not an id, or if an entry has a mistake. An
-    unindented line of a quoted text that looks like an id is mistaken for a definition.
+    parsed completely if an unindented line is not an id, or if an entry has a mistake. In a quoted
+    text, an unindented line that looks like an id is mistaken for a definition.
 
     Parameters
     ----------
@@ -376,7 +376,7 @@ def _entries_of(document: Document, problems: list[Problem]) -> list[CatalogueEn
 def _cuts(path: Path) -> Iterator[tuple[str | None, str]]:
     """Yield id and text of each definition; the id is None if it cannot be recognised.
 
-    Empty lines precede the text, so that its line numbers agree with the file.
+    Empty lines precede the text, so that the line numbers agree with those of the file.
     """
     text = read_text(path)
     heads, above, end = list(_HEAD.finditer(text)), 0, 0

@@ -36,16 +36,16 @@ inches.
 _USE_KEY = re.compile(r"\buse: *([\w-]+)")
 _MIN_SIMILARITY = 0.8
 """Similarity above which an unknown word is treated as misspelt: `releese` and `release`
-have 0.86.
+have a similarity of 0.86.
 """
 _MIN_SIMILARITY_SHORT = 0.75
 """Similarity above which a word of `_SHORT_WORD` letters is treated as misspelt, if its first
-letter is right: `wyre` is `wire`, but `back` is not `pack`.
+letter is right: `wyre` is read as `wire`, but `back` is not read as `pack`.
 """
 _SHORT_WORD = 4
 """Number of letters below which an unknown word is never treated as misspelt."""
 _SUGGESTED = 3
-"""Number of components that are suggested for an unknown one."""
+"""Number of components that are suggested for an unknown component."""
 
 
 @dataclass(frozen=True)
@@ -123,10 +123,10 @@ class WordIndex:
     def suggested(self, text: str, near: str | None) -> list[str]:
         """Return up to three suggested ids for a text that is not an id.
 
-        `near` is the id with the most similar spelling. It is the only suggestion if the text
-        contains a digit, such as in a size, or if no component contains every word of the text.
-        Otherwise, the suggestions are the components that contain every word, and those used most
-        often in the shipped lines come first.
+        `near` is the id with the most similar spelling. This id is the only suggestion if the text
+        contains a digit, because digits usually give a size, or if no component contains every word
+        of the text. Otherwise, the suggestions are the components that contain every word. The
+        components used most often in the shipped lines come first.
         """
         if near and any(map(str.isdigit, text)):
             return [near]
@@ -142,7 +142,7 @@ class WordIndex:
         first: Sequence[str] = (),
         by: str | None = None,
     ) -> list[Listed]:
-        """Find the components that contain all words of a text and meet all its limits.
+        """Find the components that contain all words and meet all limits of a text.
 
         A limit is a word such as ``breaking>50kN``. Hyphens separate words as blanks do, because
         spellings vary. A size such as ``8mm`` or ``17 in`` also matches an equal size in another
@@ -284,9 +284,9 @@ def _uses() -> Counter[str]:
 def _rank(each: Listed, words: Sequence[str], others: Sequence[str]) -> int:
     """Return the rank of a match; a smaller rank is a better match.
 
-    In order of rank: exact id; start or end of the id; all words in the id, of which the first
-    begins the id; all words in the id; all words in other own texts; a match by a synonym or the
-    source. `others` are the words without sizes.
+    The matches, in order of rank, are: the exact id; the start or end of the id; all words in the
+    id, which begins with the first word; all words in the id; all words in the other own texts; a
+    match by a synonym or the source. `others` are the words without sizes.
     """
     if not words:
         return 0
@@ -419,7 +419,7 @@ class Wanted:
 def wanted(word: str) -> Wanted | None:
     """Parse a word of a search text as a limit; return None if it is a plain word.
 
-    A number without a unit is taken in the unit of its column.
+    A number without a unit has the unit of its column.
     """
     found = _LIMIT.fullmatch(word)
     if found is None:

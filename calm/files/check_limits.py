@@ -44,11 +44,13 @@ class Limit:
     default: float | None = None
 
 
-_UFC = "UFC 4-159-03, table 3-7: 3 on new breaking strength of chain and wire"
+_UFC = "UFC 4-159-03, table 3-7: a factor of 3 on the breaking strength of new chain and wire"
 _PRACTICE = "oceanographic practice: a third to a fifth of the breaking load"
 _DEWEY = RULES["anchor-weight"].source
-_NO_FIGURE = "practice of mooring groups, 50 to 100 kgf above the release; no figure is published"
-_BERTEAUX = "Berteaux, Prindle & May, OCEANS '87: fish bite from the surface to 1000 m and more"
+_NO_FIGURE = "practice of mooring groups: 50 to 100 kgf above the release; no value is published"
+_BERTEAUX = (
+    "Berteaux, Prindle & May, OCEANS '87: fish attack ropes from the surface to 1000 m and deeper"
+)
 _2SK = RULES["wave-strength"].source
 _LIFE = "API RP 2SK: a fatigue life of three times the service life"
 _URI = "URI GSO mooring program"
@@ -58,7 +60,7 @@ class SafetyFactors(definition.Model):
     """Required ratios of breaking load to tension, by material."""
 
     steel: Annotated[float, _SAFETY, Limit(_UFC)] = definition.described(
-        "factor for steel, and for all materials except synthetic rope", 3, default=3.0
+        "factor for steel and all other materials except synthetic rope", 3, default=3.0
     )
     synthetic: Annotated[float, _SAFETY, Limit(_PRACTICE)] = definition.described(
         "factor for synthetic rope", 5, default=5.0
@@ -113,7 +115,7 @@ class Checks(definition.Model):
         "minimum ratio of breaking load to tension during the anchor drop", 2, default=2.0
     )
     launch_working_factor: Annotated[float, _FACTOR, Limit()] = definition.described(
-        "minimum ratio of working load to tension during the anchor drop", 1, default=1.0
+        "maximum ratio of tension to working load during the anchor drop", 1, default=1.0
     )
     waves_safety_factor: Annotated[float, _SAFETY, Limit(_2SK)] = definition.described(
         "minimum ratio of breaking load to maximum tension in waves", 1.67, default=1.67
@@ -130,7 +132,7 @@ class Checks(definition.Model):
         "share of a surface float's buoyancy that must remain", 0.3, default=0.3
     )
     rating_margin: Annotated[float, definition.LENGTH, Limit()] = definition.described(
-        "margin below a depth rating", "100 m", default=100.0
+        "margin by which a part must stay shallower than its depth rating", "100 m", default=100.0
     )
     maximum_knockdown: Annotated[float | None, definition.POSITIVE_LENGTH, Limit(THE_DESIGN)] = (
         definition.optional("maximum knockdown of the top", "50 m")
@@ -144,10 +146,10 @@ class Checks(definition.Model):
     minimum_top_depth: Annotated[
         float | None, definition.LENGTH, Limit(THIS_PROGRAM, default=10.0)
     ] = definition.optional(
-        "minimum depth of the top of a subsurface line, also at low water", "10 m"
+        "minimum depth of the top of a subsurface line, even at low water", "10 m"
     )
     planned_depth_warning: Annotated[float, definition.LENGTH, Limit()] = definition.described(
-        "difference from the planned depth that causes a warning, if it exceeds 2 % of that depth",
+        "difference from the planned depth that causes a warning; 2 % of that depth if larger",
         "10 m",
         default=10.0,
     )
@@ -157,7 +159,7 @@ class Checks(definition.Model):
         default=0.1,
     )
     fishbite_depth: Annotated[float, definition.LENGTH, Limit(_BERTEAUX)] = definition.described(
-        "maximum depth at which fish bite synthetic rope; 0 m if there is no fish bite",
+        "depth down to which fish attack synthetic rope; 0 m in waters without such fish",
         "1500 m",
         default=1000.0,
     )
@@ -177,8 +179,9 @@ LENIENT_IF_LESS = (
     *("weight", "diameter", "cn", "ct", "cx", "cd", "drag_area", "kn", "kt"),
     *("k_surface", "wind_area", "wind_cd"),
 )
-"""Component weight and drag, for which a smaller value makes the check more lenient, except for
-anchors.
+"""Component weight and drag, for which a smaller value makes the check more lenient.
+
+Anchors are an exception.
 """
 
 
@@ -193,7 +196,7 @@ class LimitKey:
     value : limit in use [SI, degrees]; None if there is no limit
     default : default [SI, degrees]; None without a default
     source : source of the default
-    backed : whether the design gives a source for the value that it sets
+    backed : False if an item of the line overrides the default without giving a source
     share : whether the value is a fraction, which is displayed in percent
     """
 

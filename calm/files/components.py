@@ -1,8 +1,8 @@
 """The kinds of components that a catalogue, or `components:` of a mooring file, can define.
 
 Some values are alternatives: the drag of a body is given as `kn`, or as `drag_area` and `cd`; a net
-force is given, or is computed from mass and volume. If an override gives one alternative, the
-others are removed from the definition; values that do not contradict the override are kept.
+force is given, or is computed from mass and volume. If an override gives one alternative, the other
+alternatives are removed from the definition; values that do not contradict the override are kept.
 Lengths, masses and forces of cables and chains are per metre.
 """
 
@@ -103,7 +103,8 @@ class Cable(Flexible):
         "true for a wire rope that does not rotate under load", True
     )
     elongation: Elongation | None = optional(
-        "rows of load divided by breaking load, and strain, e.g. [[0.1, 0.03], [0.3, 0.08]]",
+        "rows of two numbers: the load as a fraction of the breaking load, then the strain at "
+        "that load, e.g. [[0.1, 0.03], [0.3, 0.08]]",
         [[0.05, 0.05], [0.1, 0.08], [0.2, 0.12]],
     )
     dynamic_stiffness: definition.PositiveForce = optional(
@@ -111,7 +112,10 @@ class Cable(Flexible):
     )
     permanent_elongation: Annotated[
         float | None, QuantityField("number", at_least=0, at_most=1)
-    ] = optional("lasting strain of a rope after its first loading, added at every tension", "4 %")
+    ] = optional(
+        "permanent strain of a rope after its first loading, added to every strain in `elongation`",
+        "4 %",
+    )
 
     @property
     def net_buoyancy(self) -> float:
@@ -205,7 +209,7 @@ class Chain(Flexible):
 
 
 class Anchor(definition.Definition):
-    """An anchor at the lower end of a line; its drag counts only while it falls."""
+    """An anchor at the lower end of a line; the drag of the anchor is used only during its fall."""
 
     role: definition.Role = "anchor"
     kind: Literal["anchor"] = Field(description="kind of the component")
@@ -289,7 +293,7 @@ _ESSENTIAL = {
 class Outline(definition.Definition):
     """A product for which no source publishes some required values.
 
-    The mooring file that uses the product must supply them.
+    The mooring file that uses the product must supply these values.
     """
 
     model_config = ConfigDict(extra="allow")
@@ -340,7 +344,7 @@ def lacking(fields: Mapping[str, Any]) -> list[str]:
 
 
 def contradicted(kind: str, base: Set[str], override: Set[str]) -> frozenset[str]:
-    """Return the keys of a definition that an override invalidates, so that they are dropped.
+    """Return the keys of a definition that must be dropped because of an override.
 
     Parameters
     ----------
@@ -354,11 +358,11 @@ def contradicted(kind: str, base: Set[str], override: Set[str]) -> frozenset[str
     ================ =========================== ==============================================
     body, profiler   a drag in another form      its drag keys, and the `kt` given with them
     rigid            `buoyancy`                  `volume`
-    rigid            `mass` or `volume`, both    `buoyancy`, which then follows from them
-                     being known
+    rigid            `mass` or `volume`, if both `buoyancy`, which then follows from them
+                     are known
     cable            `weight` or `buoyancy`      the other of the two
-    cable            `density`, or `mass` where  `weight`, `buoyancy`, which then follow
-                     a density is known
+    cable            `density`, or `mass` if a   `weight`, `buoyancy`, which then follow
+                     density is known
     cable            `stiffness`                 `elongation`, `permanent_elongation`
     cable            `elongation`                `stiffness`
     chain, anchor    `mass` or `density`         `weight`, which then follows
@@ -413,6 +417,6 @@ def odd_overrides(
     fibre = fibre_of(defined.material)
     if fibre is not None and fibre_of(component.material) is None:
         yield (
-            f"`material: {component.material}` replaces the {fibre.name} of {use}, which is no "
-            "longer checked as a fibre rope"
+            f"`material: {component.material}` replaces the {fibre.name} of {use}; the part is "
+            "no longer checked as a fibre rope"
         )

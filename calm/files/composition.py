@@ -23,12 +23,12 @@ _DEEPEST = 100
 depth.
 """
 
-# These are no line breaks in YAML 1.2, but they are in YAML 1.1, which PyYAML reads.
+# YAML 1.1, which PyYAML reads, treats these characters as line breaks, but YAML 1.2 does not.
 _NO_BREAKS = str.maketrans(dict.fromkeys("\x85\u2028\u2029", " "))
 
 _TAG = re.compile(r"(?<![^\s\[{,])!")
 
-# These could move the cursor of a terminal or reverse the digits next to them, or are not text.
+# These characters could move the cursor of a terminal or reverse adjacent digits, or are not text.
 _CONTROL_CHARACTER = re.compile(
     "[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]"
 )
@@ -144,7 +144,7 @@ class _Reader:
         start = mark.index + self._start
         place = mark.line + 1, mark.column + 1
         if isinstance(event, events.AliasEvent):
-            if event.anchor not in self._anchors:  # else the mistake is reported there
+            if event.anchor not in self._anchors:  # a known anchor has been reported already
                 raise MarkedYAMLError(None, None, f"found undefined alias '{event.anchor}'", mark)
             return Node("scalar", start, start, *place, "", None)
         if event.anchor is not None or event.tag not in _PLAIN_TAGS:

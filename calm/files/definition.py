@@ -1,7 +1,8 @@
 """Keys that every component may have, and the conventions for their values.
 
-A quantity is text with a unit in a file. Here it is an SI float, with angles in degrees, or None if
-it is not given. Net forces refer to sea water of `CATALOGUE_DENSITY` and to standard gravity.
+In a file, a quantity is text with a unit. In the models, a quantity is an SI float (angles in
+degrees), or None if the file does not give it. Net forces refer to sea water of `CATALOGUE_DENSITY`
+and to standard gravity.
 """
 
 from __future__ import annotations
@@ -204,8 +205,8 @@ def _alone_or_listed(schema: dict[str, Any]) -> None:
 class EstimatedFigure(Model):
     """Estimate of a component value that no source publishes, with its lower bound `low`.
 
-    `low_in_waves` is a smaller lower bound for lines in waves. It is given if the values from which
-    the estimate is made apply only to steady loads.
+    `low_in_waves` is a smaller lower bound for lines in waves. This bound is given if the estimate
+    is made from values that apply only to steady loads.
     """
 
     quantity: Literal[
@@ -221,8 +222,9 @@ class EstimatedFigure(Model):
         "lower bound in waves, if it is less than `low`", "8 kN"
     )
     quality: Literal["high", "medium", "low"] | None = optional(
-        "quality of the source for this item: high, published by its manufacturer; medium, "
-        "an owner's list or use at that depth; low, a similar item, or derived",
+        "how well the source applies to this item: high if its manufacturer published the values; "
+        "medium for an owner's list, or for use at that depth; low for a similar item, or for a "
+        "derived value",
         "low",
     )
     source: Text = described("source of the figures", "the chain above it")
@@ -308,7 +310,7 @@ class Definition(Model):
     searched: tuple[str, ...] | None = optional(
         "keys for which no source was found", ["breaking_load"]
     )
-    prefer: Text | None = optional("id of a better documented entry for the same product", "sbe37")
+    prefer: Text | None = optional("id of a better-documented entry for the same product", "sbe37")
     date: Text | None = optional("day, e.g. 2026-11-20", "2026-11-20")
     items: Annotated[int | None, Field(ge=1)] = optional(
         "number of equal items in the component, each with its own serial number, such as two "
@@ -380,7 +382,7 @@ def is_in_air(info: ValidationInfo) -> bool:
 def volume_from_weights(mass: float | None, net_buoyancy: float) -> float | None:
     """Compute the displaced volume [m³] from mass [kg] and net buoyancy [N].
 
-    With values per metre, the volume is per metre as well. Return None if the mass is unknown.
+    If the values are per metre, the volume is also per metre. Return None if the mass is unknown.
     """
     if mass is None:
         return None

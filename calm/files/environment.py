@@ -154,7 +154,7 @@ class UniformCurrent(Model):
 
     speed: Annotated[float, _SPEED] = described("speed of the water", "0.5 m/s")
     toward: water.Toward = described(
-        "direction towards which it flows or moves, clockwise from north, e.g. 90 deg", "90 deg"
+        "direction towards which the water flows, clockwise from north, e.g. 90 deg", "90 deg"
     )
     w: Annotated[float, QuantityField("speed")] = described(
         "vertical speed, positive up", "0.01 m/s", default=0.0
@@ -164,8 +164,8 @@ class UniformCurrent(Model):
 class CurrentFile(Model):
     """A measured or modelled current at one time, in a CSV or NetCDF file.
 
-    `declination` [degrees, positive east] is the magnetic declination. It is given if directions
-    in the file are relative to magnetic north.
+    `declination` [degrees, positive east] is the magnetic declination, which is given if the
+    directions in the file are relative to magnetic north.
     """
 
     file: Text = described("CSV or CF NetCDF, in the folder of the mooring file", "adcp.nc")
@@ -238,7 +238,7 @@ class EnvironmentKeys(TowEnvironmentKeys):
     )
     depth: Annotated[float, _WATER_DEPTH] = described("water depth, e.g. 1100 m", "1100 m")
     maximum_speed: Annotated[float, QuantityField("speed", above=0)] = described(
-        "speed above which a current is an error", "3 m/s", default=_MAXIMUM_SPEED
+        "current speed above which the file is rejected", "3 m/s", default=_MAXIMUM_SPEED
     )
     depth_range: Annotated[_Levels | None, BeforeValidator(_two_depths)] = optional(
         "water depth at low and at high water, e.g. [98 m, 104 m]", ["98 m", "104 m"]
@@ -331,7 +331,7 @@ STRONGEST_WIND = 75.0
 def _current_doubts(current: CurrentTable, depth: float | None) -> list[str]:
     """Return remarks about implausible currents in a table of the file.
 
-    There are none for a current from a record, whose remarks are reported with it.
+    A current from a record gives no remarks here, because the record reports its own remarks.
     """
     if current.record is not None:
         return []
@@ -387,7 +387,7 @@ def _seabed(
             if not 0.5 < grid.depth / depth < 2.0:
                 notices.append(
                     f"The seabed of {given.file} is {grid.depth:.4g} m deep at the position of the "
-                    f"mooring, where `depth` is {depth:.4g} m: check the unit and the position."
+                    f"mooring, but `depth` is {depth:.4g} m: check the unit and the position."
                 )
             return grid
         except InputError as error:

@@ -66,7 +66,8 @@ class Differences:
     Attributes
     ----------
     changed : changed values: first those outside the line, then those in the line from the top down
-    moved : parts that have moved within the line, each with the parts above it before and after
+    moved : parts that have moved within the line; each `Change` has the part above the moved part
+        in the first and in the second line
     removed, added : labels of removed and added pieces and clamps
     pairs : matched pieces and clamps, in the order of the first line
     """
@@ -149,8 +150,8 @@ def _known_clamps(
 ) -> list[Known]:
     """Return the contents of clamps, which match only if their pieces are matched.
 
-    `partner` gives the index of the matched piece in the other line; it is None for the clamps of
-    the second line.
+    `partner` gives the index of the matched piece in the other line. For the clamps of the second
+    line, `partner` is None.
     """
     labels = own_labels([clamp.label for _, clamp in clamps])
     known = []
@@ -258,7 +259,7 @@ def _of_current(table: CurrentTable) -> ComparedValue:
 
 
 def _value_text(value: Any) -> str:
-    """Return a value that is neither a number nor None as text."""
+    """Convert a value that is neither a number nor None to text."""
     if isinstance(value, BaseModel) or is_dataclass(value):
         given = {name: one for name, one in _fields(value).items() if one is not None}
         value = {name: one for name, one in given.items() if not isinstance(one, tuple) or one}
@@ -286,10 +287,10 @@ _NUMBERED = re.compile(r"(.+) ([1-9]\d*)")
 
 @dataclass(frozen=True)
 class Known:
-    """A part to be matched: its label without an added number, and keys of its content.
+    """A part to be matched: its label without an added number, and its content.
 
-    `contents` are comparison keys, from the strictest to the least strict. Parts whose keys are
-    equal are considered equal.
+    `contents` are the keys by which parts are compared, from the strictest to the least strict.
+    Parts with equal keys match.
     """
 
     label: str

@@ -22,8 +22,8 @@ def listed_serials(given: str | tuple[str, ...] | None) -> tuple[str, ...]:
 class Equipment(definition.Model):
     """Keys that describe the individual equipment at one position in the line.
 
-    In an item or clamp, `serial` is a text, or a list of texts for all pieces that `count` produces
-    and all `items` of each piece; each piece gets its own serial numbers. After reading,
+    In an item or clamp, `serial` is a text, or a list of texts: one for each of the `items` of each
+    piece that `count` produces. After reading, each piece has its own serial numbers, and
     `planned_depth` may also come from a depth in the label.
     """
 
@@ -54,7 +54,7 @@ class Equipment(definition.Model):
         return listed_serials(self.serial)
 
     def of(self, repeat: int, items: int) -> Equipment:
-        """Return the equipment of one piece that an item of the line produces.
+        """Return the equipment of one of the pieces that an item of the line produces.
 
         Parameters
         ----------
@@ -83,7 +83,7 @@ class LengthAt(definition.Model):
 ASSEMBLY_FIGURES = (
     "working_load", "breaking_load", "opening_load", "grip", "max_tilt", "depth_rating"
 )  # fmt: skip
-"""Values of an assembly that apply to each of its parts without an own value."""
+"""Values of an assembly that apply to each of its parts that has no value of its own."""
 MOST_PIECES = 10_000
 """Maximum number of pieces in a line, after expansion of assemblies and counts."""
 
@@ -97,7 +97,7 @@ class ClampKeys(Equipment):
     use: str = described("id of a component in the catalogue or in `components`", "sbe37")
     label: Label = ""
     at: Annotated[float, definition.LENGTH] = described(
-        "distance from the top of the piece, unstretched", "20 m"
+        "unstretched distance from the top of the piece", "20 m"
     )
 
 

@@ -29,8 +29,9 @@ ONE_LEG_ONLY = (
     "drop, make a file of its most loaded leg alone"
 )
 NET_SURE = (
-    "single lines; for the effect of drag, buoyancy or current on a net, use `calm run --explain`, "
-    "or solve the net with other values, in a copy of its file or by `with_` in Python"
+    "single lines; to see the effect of drag, buoyancy or current on a net, use `calm run "
+    "--explain`, or change the values in a copy of its file, or with `with_` in Python, and solve "
+    "the net again"
 )
 
 _Offset = Annotated[float, QuantityField("length")]
@@ -57,15 +58,15 @@ _At = Annotated[
     tuple[_Offset, _Offset],
     BeforeValidator(_at_given, json_schema_input_type=tuple[Text, Text]),
     Field(
-        description="metres east and north of the origin, or a latitude and a longitude, the "
-        "origin being the `position` of the file",
+        description="metres east and north of the origin, or a latitude and a longitude; the "
+        "origin is the `position` of the file",
         examples=[["30 m", "0 m"], ["57 28.84 N", "3 12.10 W"]],
     ),
 ]
 
 
 class HeldKeys(Model):
-    """Position of a held end, such as at a ship, a pier or a platform."""
+    """Position of a held end, for instance at a ship, a pier or a platform."""
 
     depth: _Offset = Field(
         description="depth below the surface; negative above it, in air", examples=["2 m", "-10 m"]
@@ -83,7 +84,7 @@ class AnchoredKeys(Model):
 
 
 class EndKeys(Model):
-    """Connection of a leg end, given by at most one of these keys; a free end has none."""
+    """Connection of a leg end, given by one of these keys; a free end has none of the keys."""
 
     join: Text | None = optional("a node where legs meet", "A")
     anchor: AnchoredKeys | None = optional("the seabed", {"at": ["30 m", "0 m"]})
@@ -124,7 +125,7 @@ class LegKeys(Model):
     )
     bottom: _End | None = Field(
         default=None,
-        description="connection of its lower end; by default the anchor, if that is the last item",
+        description="connection of its lower end; by default the anchor, if the last item is one",
         examples=[{"join": "A"}, {"anchor": {"at": ["30 m", "0 m"]}}, "free"],
     )
 

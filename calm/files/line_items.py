@@ -26,7 +26,9 @@ _COUNT = QuantityField("number", at_least=1, at_most=MOST_PIECES)
 _ITEM_KEYS = frozenset(item_keys.ItemKeys.model_fields)
 _ASSEMBLY_KEYS = frozenset({"use", "label", "count", "serial"})
 _NUMBERED = (("instrument", "release"), ("float",))
-"""Assembly parts that serial numbers refer to, by role: the first role present in the assembly."""
+"""Roles of the parts to which the serial numbers of an assembly refer; the second group is used if
+the assembly has no part of the first group.
+"""
 _SOURCE_KEYS = frozenset({"source", "sources"})
 _CLAMP_KEYS = frozenset(item_keys.ClampKeys.model_fields)
 _Part = TypeVar("_Part", Piece, Clamp)
@@ -166,8 +168,8 @@ class LineReader:
             length = self._quantity(item, "length", POSITIVE_LENGTH, need) or math.nan
         if "length_at" in item.data and not isinstance(component, Flexible):
             message = (
-                "`length_at` is for cables and chains; the length of this piece is that of "
-                "its definition"
+                "`length_at` is for cables and chains; this piece has the length given in its "
+                "definition"
             )
             item.refuse(("length_at",), message, key=True)
         elif "length" in item.data and "length_at" in item.data:
@@ -213,7 +215,7 @@ class LineReader:
     def _fit_depth(self, item: SourceMapping, *, fits: bool) -> float | None:
         """Return the depth [m] that determines the length of a piece that is cut to fit.
 
-        It is the depth of the top of the line or, in a tow, of the lower end of the piece.
+        This is the depth of the top of the line or, in a tow, of the lower end of the piece.
         """
         key, foreign, home = ("top_depth", "body_depth", "tows")
         if self._towed:
@@ -304,8 +306,8 @@ class LineReader:
         """Distribute the serial numbers of an item over the parts of its assembly.
 
         The numbers are those of the instruments and releases of the assembly or, if it has none, of
-        its floats. They are listed in order, one for each item of a component, one assembly after
-        another.
+        its floats. The numbers are listed in order: one for each item of a component, and one
+        assembly after another.
         """
         numbers = item_keys.read_equipment(item).serials
         if not numbers:
@@ -320,7 +322,7 @@ class LineReader:
             wanted = f"{total * count} number{'s' * (total * count != 1)}"
             message = f"`serial` must have {wanted} for {named}, not {len(numbers)}"
             if not own:
-                message = "`serial`: no part is an instrument, a release or a float"
+                message = "`serial`: this item contains no instrument, release or float"
             item.refuse(("serial",), message)
             return pieces
         mine = {
@@ -349,7 +351,7 @@ class LineReader:
         entry: CatalogueEntry,
         item: SourceMapping,
     ) -> tuple[Piece, ...]:
-        """Copy values of an assembly to those of its parts that lack them."""
+        """Copy values of an assembly to the parts of the assembly that lack them."""
         for key in ASSEMBLY_FIGURES:
             value = getattr(assembly, key)
             if value is None:
@@ -458,7 +460,7 @@ class LineReader:
     ) -> None:
         """Record overrides that make the check more lenient.
 
-        They allow a component more load, depth or buoyancy, or give it less weight or drag.
+        Such overrides allow a component more load, depth or buoyancy, or less weight or drag.
         """
         loads = () if isinstance(component, Anchor) else LENIENT_IF_LESS
         sourced = item.data.get("sources")
@@ -518,7 +520,7 @@ class LineReader:
 
 
 def _with_figure(piece: Piece, key: str, value: float, source: str | None) -> Piece:
-    """Set a value of a piece, and of the clamps on it, if they lack the value and need it."""
+    """Set a value of a piece and of its clamps, if they need the value but lack it."""
 
     def filled(part: _Part) -> _Part:
         component: Component = part.component

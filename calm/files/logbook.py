@@ -147,7 +147,7 @@ class ClockCheck(definition.Model):
 
     checked: Moment = described("time of the clock check", "2028-03-02T10:40")
     late: Annotated[float, definition.QuantityField("time")] = described(
-        "delay of the clock; negative if it was ahead", "12 s"
+        "delay of the clock; negative if the clock was ahead", "12 s"
     )
 
 
@@ -160,8 +160,8 @@ class DeployedItem(definition.Model):
     )
     length: definition.PositiveLength = optional("cut length of a cable", "480 m")
     clock: ClockCheck | None = optional(
-        "delay of the instrument's clock when it was checked; it is assumed to grow linearly "
-        "from the deployment on",
+        "delay of the instrument's clock when it was checked; the delay is assumed to grow "
+        "linearly from the deployment on",
         {"checked": "2028-03-02T10:40", "late": "12 s"},
     )
     remark: Text | None = optional("any remark", "one terminal remade")

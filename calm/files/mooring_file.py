@@ -46,7 +46,7 @@ class TowKeys(Model):
 
 
 class Solver(Model):
-    """Solver settings; `angle_step` is in radians, `tolerance` is relative to the water depth."""
+    """Solver settings; after the file is read, `angle_step` is in radians."""
 
     angle_step: Annotated[
         float, QuantityField("angle", above=0, at_most=10), AfterValidator(math.radians)
@@ -59,14 +59,17 @@ class Solver(Model):
         "tolerance of the anchor's depth, as a share of the water depth", 1e-07, default=1e-7
     )
     drag: Literal["constant", "reynolds"] = described(
-        "constant coefficients, or by Reynolds number for parts with `surface: smooth`",
+        "drag coefficients: constant, or a function of the Reynolds number for parts with "
+        "`surface: smooth`",
         "reynolds",
         default="constant",
     )
     friction: Literal["berteaux", "hoerner", "constant"] = described(
         "law of friction along cables", "berteaux", default="berteaux"
     )
-    strumming: Strumming = optional("increase of the Cn of cables by vibration", {"factor": 1.5})
+    strumming: Strumming = optional(
+        "increase of the Cn of cables due to vibration", {"factor": 1.5}
+    )
     buoy_drag: Literal["immersed", "full"] = described(
         "drag of a surface float: at its draft, or fully immersed", "immersed", default="immersed"
     )
@@ -82,13 +85,13 @@ class MooringFile:
     `pieces` are listed from the top of a mooring to its anchor, or in a tow (if `tow` is not None)
     from the ship to the towed body. If there are `legs`, the pieces are listed leg by leg.
 
-    `notices` are remarks for the user, for instance that a component of the user hides one in the
-    shipped catalogue, or that levels of a measured current were discarded. `variants` are the named
-    environments before validation. `accepts` are the accepted findings of the design check, and
-    `uncertainty` is the uncertainty of the inputs. `looser` are the limits for which an item of
-    the line has a less strict value than the definition of its component. `document` is the title
-    block, `releases` are the releases with their codes, `deployed` is the deployment, and `units`
-    are the display units.
+    `notices` are remarks for the user, for instance that a component of the user hides a component
+    of the shipped catalogue, or that levels of a measured current were discarded. `variants` are
+    the named environments before validation. `accepts` are the accepted findings of the design
+    check, and `uncertainty` is the uncertainty of the inputs. `looser` are the limits for which an
+    item of the line has a less strict value than the definition of its component. `document` is the
+    title block, `releases` are the releases with their codes, `deployed` is the deployment, and
+    `units` are the display units.
     """
 
     path: str
@@ -134,10 +137,11 @@ class MooringFile:
     def anchor_friction(self) -> float:
         """Friction coefficient that would hold the anchor equally well on a level seabed.
 
-        The coefficient on the slope is that of the anchor or, if not given, that in `checks:`. With
-        slope b of the seabed, weight w, and a load H in the worst direction, down the slope, the
-        anchor holds if H cos b + w sin b <= friction (w cos b - H sin b). On a level seabed, the
-        equivalent coefficient is tan(arctan(friction) - b).
+        `friction` is the coefficient on the slope, from the anchor or else from `checks:`. The
+        horizontal load H acts in the worst direction, down the slope. With the weight w of the
+        anchor and the angle b of the slope, the anchor holds if
+        H cos b + w sin b <= friction (w cos b - H sin b). On a level seabed, the equivalent
+        coefficient is tan(arctan(friction) - b).
         """
         own, seabed = self.anchor.friction, self.environment.seabed
         friction = self.checks.anchor_friction if own is None else own
@@ -177,7 +181,7 @@ class MooringFile:
 def unknown_releases(
     releases: Sequence[ReleaseKeys], pieces: Sequence[Piece], deployed: Deployed | None
 ) -> list[str]:
-    """Return a note for each entry in `releases` whose serial number no release of the line has."""
+    """Return a note for each entry in `releases` whose serial number matches no release."""
     parts = [part for part in parts_of(pieces) if part.component.role == "release"]
     given = {} if deployed is None else deployed.serials
     serials = {one for part in parts for one in (*part.serials, *given.get(part.label, ()))}

@@ -23,8 +23,8 @@ STAND_IN = ""
 class Place:
     """Position of a piece or clamp in the file, used to identify the part after reading.
 
-    `Place(3)` is the fourth item of the line, whatever the `count` of items above it, and `Place(3,
-    clamp=0)` is the first clamp of the fourth item.
+    `Place(3)` is the fourth item of the line, regardless of the `count` of the items above it, and
+    `Place(3, clamp=0)` is the first clamp of the fourth item.
 
     Attributes
     ----------
@@ -46,7 +46,7 @@ class Place:
 
     @property
     def row(self) -> Place:
-        """Place of the item or clamp in the file; for a part of an assembly, that of its item."""
+        """Place of the item or clamp in the file; for a part of an assembly, place of its item."""
         return Place(self.item) if self.part >= 0 else Place(self.item, clamp=self.clamp)
 
 
@@ -67,9 +67,9 @@ class Clamp:
     """An instrument clamped on a piece.
 
     `at` is the distance of the clamp from the upper end of the piece, in metres of unstretched
-    length. For a profiler, `travel` gives the distances of its upper and lower stop from the upper
-    end of the piece, where inf means the lower end; its `at` is the upper stop. `named` is the
-    label in the file, empty if the file gives none.
+    length. For a profiler, `travel` gives the distances of the upper and the lower stop from the
+    upper end of the piece (inf for the lower end of the piece), and `at` is the distance of the
+    upper stop. `named` is the label in the file, empty if the file gives none.
     """
 
     use: str

@@ -42,7 +42,7 @@ _LENGTHS = re.compile(
 )
 _RANGE = re.compile(r"(?<![A-Za-z0-9])[\d.]+\s*(?:m\s*)?(?:-|–|\.\.|to)\s*[\d.]+\s*(?:m|ft)\b")
 _DOUBTFUL = re.compile(r"(?<![\w.])\d{1,3} \d{3}\s*(?:m|ft)\b|\d[eE]\d|\d\s*[x×*]\s*\d")
-"""A number of two words, a power of ten or a product."""
+"""Pattern of a number that is written as two words, as a power of ten or as a product."""
 _WITH_UNIT = re.compile(
     r"(@\s*)?(?<![\d.,])(\d{1,3}(?:,\d{3})+|\d+(?:\.\d+)?)\s*(m|met(?:er|re)s?|ft|feet)"
     r"(?![A-Za-z0-9²³^]|\s*/\s*(?:s|min|h)\b)"
@@ -50,8 +50,8 @@ _WITH_UNIT = re.compile(
 _AFTER_AT = re.compile(r"(@\s*)(\d{1,3}(?:,\d{3})+|\d+(?:\.\d+)?)()(?![\w.,/])")
 _AT_THE_END = re.compile(r"^(.*)[_-](\d{4})$")
 _ROUND = 50
-"""Four-digit numbers in a label are depths only if they are multiples of this value [m], as is one
-serial number in 50.
+"""Four-digit numbers in a label are depths only if they are multiples of this value [m]. Only one
+serial number in 50 is such a multiple.
 """
 _FOOT = 0.3048
 _LEAST_OF_A_FLOAT = 10.0
@@ -62,8 +62,8 @@ def depth_in_label(label: str, serial: str | None = None, rating: float | None =
 
     Parameters
     ----------
-    serial : serial number of the part, which is not taken for a depth
-    rating : depth rating of the component [m], which is not taken for a planned depth
+    serial, rating : serial number of the part, and depth rating of the component [m]; a number that
+        equals one of these is not a planned depth, unless the number follows ``@``
     """
     text = _NUMBERED.sub("|", label)
     if any(pattern.search(text) for pattern in (_LENGTHS, _RANGE, _DOUBTFUL)):

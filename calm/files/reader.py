@@ -125,7 +125,7 @@ class _ReadLine(NamedTuple):
 
 
 class MooringReader:
-    """Reader of a mooring file; it reads the line once and can then use several environments.
+    """Reader of a mooring file, which reads the line once for use in several environments.
 
     Parameters
     ----------
@@ -321,9 +321,8 @@ def _check_slides(
         if here.slope >= most:
             complaints.append(
                 f"with a friction coefficient of {math.tan(math.radians(most)):g} the anchor "
-                "slides by its own "
-                f"weight on a seabed that slopes by {here.slope:.4g}°; it holds on slopes of less "
-                f"than {most:.3g}°"
+                f"slides under its own weight on a seabed that slopes by {here.slope:.4g}°; it "
+                f"holds on slopes of less than {most:.3g}°"
             )
         if place is not None and place.depth is not None:
             pass
@@ -402,7 +401,7 @@ def choose_environment(
 
 
 def _check(section: SourceMapping, towed: bool) -> None:
-    """Check an environment that may have a base or be one.
+    """Check an environment that may have a base or be a base.
 
     Its water depth may therefore be missing.
     """

@@ -26,7 +26,7 @@ _GYRATION = QuantityField("length", above=0, at_most=20)
 
 Inclination = Annotated[
     Literal["follows", "insensitive"] | None,
-    described("whether drag follows the inclination of the piece", "follows"),
+    described("whether the drag depends on the inclination of the piece", "follows"),
 ]
 Surface = Annotated[
     Literal["painted", "smooth"] | None,
@@ -125,17 +125,17 @@ class Rigid(definition.Definition):
     wind_cd: definition.Coefficient = optional("drag coefficient of `wind_area`", 1.0)
 
     heave: Literal["filtered", "follows", "panels"] | None = optional(
-        "heave of a surface float in waves: from its hull, from panels, or equal to that of "
-        "the water",
+        "method for the heave of a surface float in waves: `filtered` from its draft, waterplane "
+        "and mass; `panels` from panels on its hull; `follows` if it moves with the surface",
         "follows",
     )
     rao: Annotated[tuple[tuple[float, ...], ...] | None, PlainValidator(_read_rao)] = optional(
-        "response of a float by angular frequency in rad/s: heave per metre of elevation and "
-        "its phase; with pitch, also pitch per metre of elevation and its phase",
+        "response of a float at each angular frequency in rad/s: heave per metre of wave elevation "
+        "and phase of the heave; optionally also pitch per metre and phase of the pitch",
         {"0.5": [1.0, "0 deg"], "2": [0.6, "20 deg"]},
     )
     centre_of_mass: Annotated[float | None, _REACH] = optional(
-        "centre of mass of a float with its load, above the keel; for its pitch", "0.8 m"
+        "centre of mass of a float with its load, above the keel; needed for its pitch", "0.8 m"
     )
     radius_of_gyration: Annotated[float | None, _GYRATION] = optional(
         "radius of gyration of a float with its load, about `centre_of_mass`", "0.9 m"
@@ -319,8 +319,8 @@ class Profiler(Shaped):
 
     kind: Literal["profiler"] = Field(description="kind of the component")
     between: Annotated[tuple[definition.Text, ...] | None, BeforeValidator(_two_stops)] = optional(
-        "labels of its upper and its lower stop: clamps on its wire, or pieces at the "
-        "ends of the wire",
+        "labels of the upper and the lower stop, which are clamps on the wire, or pieces at "
+        "the ends of the wire",
         ["upper bumper", "lower bumper"],
     )
     minimum_tension: Annotated[float, definition.POSITIVE_FORCE] = described(

@@ -16,7 +16,7 @@ class RuleText:
     title : title for users
     quantity : name in `calm.quantities` of the values and limits; "" for a rule without values
     judges : description of the value that is checked
-    limit : description of the limit
+    limit : sentences on the limit, and on the state of a finding beyond it
     source : source of the rule and of its default limit
     unseen : reason why the rule cannot check the profiles of a batch; "" if it can
     figures : component keys whose values the rule needs
@@ -34,235 +34,246 @@ class RuleText:
     has_ratio: bool = True
 
 
-_WAVES = "waves are checked for an environment, by `calm check`"
-_ONCE = "checked once for a mooring, by `calm check`"
+_WAVES = "`calm check` checks the waves of each environment"
+_ONCE = "`calm check` checks this once for each mooring"
 
 RULES = {
     "equilibrium": RuleText("Equilibrium", "",
-        "a finding, with the status and advice of the solver, if there is no equilibrium",
+        "whether the mooring has an equilibrium; if not, the finding gives the status and advice "
+        "of the solver",
         "",
         "A mooring without an equilibrium cannot be checked"),
     "current": RuleText("Current", "speed",
         "the strongest current of all environments, and the range of levels in each profile",
-        "a warning below 0.2 m/s, below 0.9 times the strongest current in the record used for an "
-        "environment, below 1/50 of the strongest current of another environment, or if the levels "
-        "leave more than 25 m and a tenth of the depth uncovered at the top or at the bottom",
+        "There is a warning if the current is below 0.2 m/s, below 0.9 times the strongest "
+        "current in the record used for an environment, or below 1/50 of the strongest current of "
+        "another environment. There is also a warning if the gap between the levels and the "
+        "surface, or between the levels and the seabed, exceeds both 25 m and a tenth of the "
+        "depth",
         "DNV-RP-C205: wind drives a surface current of 0.015 to 0.03 times its speed, up to 0.2 "
         "m/s at 7 m/s",
-        "the profiles of a record are the current"),
+        "in a batch, the record supplies the currents"),
     "drag-coefficient": RuleText("Drag coefficient", "",
-        "drag of spheres and cylinders in a flow with a Reynolds number above 2e5, or beyond "
-        "the curve of "
-        "`drag: reynolds`",
-        "a warning if the curve of a smooth shape makes the knockdown, or the offset at the "
-        "surface, more than 5 % greater; otherwise the effect is reported, but not judged",
+        "drag of spheres and cylinders in a flow whose Reynolds number is above 2e5, or beyond "
+        "the curve of `drag: reynolds`",
+        "There is a warning if the curve of a smooth shape makes the knockdown, or the offset of "
+        "a surface mooring, more than 5 % greater. Otherwise the effect is reported, but not "
+        "judged",
         "Constant coefficients are valid up to 2e5; above this number the drag of smooth shapes "
         "falls",
         "the profiles of a record are solved with one law of drag"),
     "environment": RuleText("Environment", "",
-        "possible but unusual values of an environment: directions that look like radians, a level "
-        "opposite to both its neighbours, a current that increases down to the seabed or exceeds "
-        "any current of deep water, a density that no sea has, tides of more than 20 m, wind of "
-        "more than 75 m/s; levels of a storm weaker than half of the ordinary current; no `wind` "
-        "although a surface float has a `wind_area`; fresh or brackish water in which the "
-        "buoyancy of a float without `mass` and `volume` is too high",
-        "a warning",
+        "possible but unusual values of an environment: directions that look like radians; a "
+        "current opposite to the currents at the levels above and below; a current that increases "
+        "down to the seabed, or is stronger than any current measured in deep water; a density not "
+        "found in any sea; a tidal range of more than 20 m; wind of more than 75 m/s; at some "
+        "levels, a storm current of less than half the ordinary current; no `wind` although a "
+        "surface float has a `wind_area`; fresh or brackish water in which the buoyancy of a float "
+        "without `mass` and `volume` is too high",
+        "There is a warning for each of these",
         "CALM's own limits, from ranges found at sea and common typing errors",
-        "environments are compared with each other, by `calm check`"),
+        "`calm check` compares the environments with each other"),
     "missing": RuleText("Missing values", "",
-        "values that rules need but a component lacks; one finding for each component id and value "
-        "lists the rules and the pieces concerned",
-        "unknown",
-        "The sources of the rules that need the value",
+        "values that rules need but a component lacks; for each component id and value, one "
+        "finding lists the rules and the pieces concerned",
+        "The state is unknown",
+        "The finding lists the rules that need the value",
         _ONCE),
     "strength": RuleText("Strength", "load",
         "maximum tension of every piece; the top piece and the anchor are checked only if they "
         "have a load limit",
-        "the smaller of the working load and the breaking load divided by `safety_factor` (3 for "
-        "steel, 5 for synthetics, 5 for all pieces of a surface mooring); only the breaking "
-        "load of a "
-        "synthetic rope counts if it is known, since rope tables give working loads for lifting",
-        "UFC 4-159-03, table 3-7: a factor of 3 for chain and wire; oceanographic practice: a "
-        "third "
-        "to a fifth of the breaking load",
-        figures=("working_load", "breaking_load")),
+        "The tension must not exceed the working load, nor the breaking load divided by "
+        "`safety_factor` (3 for steel, 5 for synthetics, 5 for all pieces of a surface mooring). "
+        "For a synthetic rope with a known breaking load, only the breaking load counts, since "
+        "rope tables give working loads for lifting",
+        "UFC 4-159-03, table 3-7, gives a factor of 3 for chain and wire; oceanographers use a "
+        "third to a fifth of the breaking load", figures=("working_load", "breaking_load")),
     "release-load": RuleText("Release load", "load",
         "maximum tension of every release, and the tension below the release when it opens",
-        "the limit of the rule `strength`, and the `opening_load` of the release if given",
-        "Static load and opening load given by the manufacturer",
+        "The tension must not exceed the limit of the rule `strength`. When the release opens, "
+        "the tension must not exceed its `opening_load`, if this is given",
+        "The manufacturer gives the static load and the opening load",
         figures=("working_load", "opening_load")),
     "clamp-grip": RuleText("Clamp grip", "load",
-        "load on every clamp from its weight in water and its drag, in the current, the anchor "
-        "drop "
-        "and the ascent",
-        "`grip` of the clamp, or its `breaking_load`; not judged if neither is given",
-        "Values given by the manufacturer of the clamp",
+        "load on every clamp from its weight in water and its drag, in the current, in the anchor "
+        "drop and in the ascent",
+        "The load must not exceed the `grip` of the clamp or, without a `grip`, its "
+        "`breaking_load`. It is not judged if neither is given",
+        "The manufacturer of the clamp gives these loads",
         "the result does not contain the current at each clamp", figures=("grip",)),
     "profiler": RuleText("Profiler on its wire", "load",
-        "tension of the wire, obstacles on it and the force that the drive needs, at both "
-        "stops and at the largest inclination of the wire",
-        "`minimum_tension` (2224 N) and `drive_force` of the profiler; a warning unless the wire "
-        "has a diameter of 6.35 to 9.53 mm, and for a profile of more than 6.4 h",
-        "McLane Moored Profiler, user manual",
+        "tension of the wire, obstacles on the wire, and the force that the profiler needs to "
+        "travel, at both stops and at the largest inclination of the wire",
+        "The tension must be at least `minimum_tension` (2224 N), the force must not exceed "
+        "`drive_force`, and no clamp may be between the stops. There is a warning if the diameter "
+        "of the wire is not between 6.35 and 9.53 mm, or if a profile takes more than 6.4 h",
+        "The limits are from the user manual of the McLane Moored Profiler",
         "the profiles of a record are solved with the profiler at its upper stop",
         figures=("drive_force",)),
     "strength-steps": RuleText("Strength steps", "load",
         "strength of every piece, compared with the cables above and below it",
-        "a warning if the piece has less than half the strength of these cables, sources give both "
-        "strengths, and the piece carries more than half of its allowable load",
-        "CALM's own limit: half the strength of the adjacent cables",
+        "There is a warning if the piece has less than half the strength of these cables, if "
+        "sources give both strengths, and if the piece carries more than half of its allowable "
+        "load",
+        "CALM's own limit: a piece should have at least half the strength of the adjacent cables",
         "the strengths of adjacent pieces do not change with the current"),
     "tilt": RuleText("Tilt", "tilt",
         "tilt of every instrument, release and clamp",
-        "`max_tilt` of the component, and `maximum_tilt` if given; a warning above `warn_tilt`",
-        "Limit given by the manufacturer: RCM 27° (BODC), single-point Doppler 30°, ADCP 15 to "
-        "20°, release 45°, sediment trap 10°",
-        figures=("max_tilt",)),
+        "The tilt must not exceed `max_tilt` of the component, nor `maximum_tilt` if this is "
+        "given. There is a warning above `warn_tilt`",
+        "The manufacturer gives the limit: RCM 27° (BODC), single-point Doppler 30°, ADCP 15 to "
+        "20°, release 45°, sediment trap 10°", figures=("max_tilt",)),
     "depth-rating": RuleText("Depth rating", "depth",
         "depth of every part in the current; for a surface float, only if its rating is specified",
-        "`depth_rating` less `rating_margin` (100 m), or half of a rating below 200 m",
-        "Rating given by the manufacturer, less a margin for a stronger current than expected",
-        figures=("depth_rating",)),
+        "The depth must not exceed `depth_rating` less `rating_margin` (100 m). For a rating "
+        "below 200 m, the depth must not exceed half of the rating",
+        "The manufacturer gives the rating; the margin allows for a stronger current than "
+        "expected", figures=("depth_rating",)),
     "top-depth": RuleText("Top depth", "depth",
         "minimum depth of the top of a subsurface line, also at low water",
-        "a failure above `minimum_top_depth`; if this is not given, a warning above 10 m",
-        "CALM's own limit: the top stays clear of waves, hulls and nets"),
+        "A depth of less than `minimum_top_depth` is a failure. If `minimum_top_depth` is not "
+        "given, there is a warning at less than 10 m",
+        "CALM's own limit: it keeps the top clear of waves, hulls and nets"),
     "planned-depth": RuleText("Planned depth", "depth",
         "difference between the planned depth and the depth in still water, for every piece and "
         "clamp with a `planned_depth` or a depth in its label",
-        "a warning above the larger of `planned_depth_warning` (10 m) and 2 % of the planned "
-        "depth; "
-        "a failure above `planned_depth_limit` (10 %) of the planned depth; parts without a "
-        "planned depth are not checked",
-        "CALM's own limit: with a large difference, the instrument measures other water than "
-        "planned, or a length or the water depth is wrong",
+        "There is a warning if the difference exceeds both `planned_depth_warning` (10 m) and 2 % "
+        "of the planned depth. The difference is a failure if it also exceeds "
+        "`planned_depth_limit` (10 %) of the planned depth. Parts without a planned depth are not "
+        "checked",
+        "CALM's own limit: a large difference puts the instrument at a wrong depth, or is due to "
+        "a wrong length or water depth",
         _ONCE),
     "stretch": RuleText("Stretch", "length",
-        "stretch of synthetic ropes without `stiffness` or `elongation`, and the load under "
-        "which a "
-        "rope with `length_at` is measured",
-        "unknown if, by published stiffnesses, the rope may stretch by more than 2 % of the water "
-        "depth; a warning if the rope is measured under more than its working load, or a "
-        "fifth of its breaking load",
+        "stretch of synthetic ropes without `stiffness` or `elongation`, and the load under which "
+        "a rope with `length_at` is measured",
+        "The state is unknown if the rope may, according to published stiffnesses, stretch by "
+        "more than 2 % of the water depth. There is a warning if the rope is measured under more "
+        "than its working load or, if this is unknown, under more than a fifth of its breaking "
+        "load",
         "CALM's own limit: soundings have a similar error, and ropes are measured under a small "
-        "load"),
+        "load",
+        "`calm check` checks this in each environment"),
     "fish-bite": RuleText("Fish bite", "depth",
-        "minimum depth of every synthetic rope, in more than 200 m of water and less than 60° from "
-        "the equator",
-        "a warning if the rope begins above `fishbite_depth` (1000 m)",
+        "minimum depth of every synthetic rope, in more than 200 m of water and less than 60° "
+        "from the equator",
+        "There is a warning if the rope begins above `fishbite_depth` (1000 m)",
         "Berteaux, Prindle & May, OCEANS '87: far from the shores, fish attack ropes from the "
-        "surface to 1000 m and deeper; the limits of water depth and latitude are CALM's own",
+        "surface to 1000 m and deeper; CALM itself sets the limits of water depth and latitude",
         "ropes are bitten over months, not during one profile", has_ratio=False),
     "knockdown": RuleText("Knockdown", "knockdown",
         "knockdown of the top",
-        "`maximum_knockdown`, if given",
+        "The knockdown must not exceed `maximum_knockdown`, if this is given",
         "The design's own `maximum_knockdown`"),
     "excursion": RuleText("Excursion", "offset",
         "horizontal offset of the top",
-        "`maximum_excursion`, if given",
+        "The offset must not exceed `maximum_excursion`, if this is given",
         "The design's own `maximum_excursion`"),
     "anchor-weight": RuleText("Anchor weight", "load",
         "weight of the anchor in water",
-        "`anchor_factor` (1.5) times (V + H / friction), with a friction coefficient of 0.6",
+        "The weight must be at least `anchor_factor` (1.5) times (V + H / friction), with a "
+        "friction coefficient of 0.6",
         "Dewey, Mooring Design & Dynamics: weight in water ≥ 1.5 (V + H/0.6)",
         figures=("weight", "density")),
     "anchor-uplift": RuleText("Anchor uplift", "load",
         "V, the vertical load on the anchor",
-        "weight of the anchor in water / `anchor_factor`",
-        "Dewey's rule, vertical part: V ≤ weight in water / 1.5",
-        figures=("weight", "density")),
+        "V must not exceed the weight of the anchor in water / `anchor_factor`",
+        "Dewey's rule, vertical part: V ≤ weight in water / 1.5", figures=("weight", "density")),
     "anchor-sliding": RuleText("Anchor sliding", "load",
         "H, the horizontal load on the anchor",
-        "friction × (weight of the anchor in water / `anchor_factor` − V)",
+        "H must not exceed friction × (weight of the anchor in water / `anchor_factor` − V)",
         "Dewey's rule, horizontal part: H ≤ friction (weight in water / 1.5 - V), with a friction "
-        "coefficient of 0.6 for a deadweight",
-        figures=("weight", "density")),
+        "coefficient of 0.6 for a deadweight", figures=("weight", "density")),
     "slack": RuleText("Minimum tension", "load",
         "minimum tension of the wires and ropes above the release that are off the seabed, if the "
         "line is longer than 50 m above its release",
-        "`minimum_tension`: 500 N for wire, 300 N for rope; `slack: allowed` exempts a piece",
-        "Mooring groups keep 50 to 100 kgf above the release; no value is published, so CALM sets "
-        "its own limits"),
+        "The tension must be at least `minimum_tension`: 500 N for wire, 300 N for rope. A piece "
+        "with `slack: allowed` is exempt",
+        "Mooring groups keep a tension of 50 to 100 kgf above the release; no limit is published, "
+        "so CALM sets its own limits"),
     "wave-strength": RuleText("Strength in waves", "load",
         "maximum tension of every piece in `waves:`: the most probable maximum in 3 h",
-        "the smaller of the working load and the breaking load divided by `waves_safety_factor` "
-        "(1.67), with the loads used for `strength`; unknown for a surface mooring without "
-        "`waves:`",
-        "API RP 2SK: 1.67 on the breaking strength of the intact mooring, with tensions from a "
-        "dynamic analysis",
+        "The tension must not exceed the working load, nor the breaking load divided by "
+        "`waves_safety_factor` (1.67); the loads are those of the rule `strength`. The state is "
+        "unknown for a surface mooring without `waves:`",
+        "API RP 2SK: the factor on the breaking strength of the intact mooring is 1.67, with "
+        "tensions from a dynamic analysis",
         _WAVES, figures=("working_load", "breaking_load")),
     "wave-slack": RuleText("Slack in waves", "load",
         "minimum tension of every piece in `waves:`: the most probable minimum in 3 h",
-        "a tension above 0; `slack: allowed` exempts a piece",
-        "A slack line takes snap loads as it tightens, and the linear wave model is not valid then",
+        "The tension must be above 0. A piece with `slack: allowed` is exempt",
+        "A slack line takes snap loads as it tightens, and the linear wave model is not valid "
+        "then",
         _WAVES),
     "fatigue": RuleText("Fatigue in waves", "life",
         "life of every piece below the float in the sea states of `waves: scatter:`",
-        "`fatigue_factor` (3) times `service_time` (365 days); not judged without a table of sea "
-        "states; unknown without a published fatigue curve",
-        "Dirlik 1985 and Miner's sum; curves of DNV-OS-E301 (chain, polyester) and API RP 2SK "
-        "(wire); a life of three times the service time",
+        "The life must be at least `fatigue_factor` (3) times `service_time` (365 days). It is "
+        "not judged without a table of sea states, and unknown without a published fatigue curve",
+        "Dirlik 1985 and Miner's sum give the damage, with curves of DNV-OS-E301 (chain, "
+        "polyester) and API RP 2SK (wire); the life must be three times the service time",
         _WAVES),
     "reserve": RuleText("Reserve buoyancy", "used_buoyancy",
         "unused share of the surface float's buoyancy",
-        "`minimum_reserve` (0.3)",
+        "The share must be at least `minimum_reserve` (0.3)",
         "Dewey: a float that uses all its buoyancy submerges; the remaining share is for waves"),
     "freeboard": RuleText("Freeboard", "freeboard",
         "freeboard of the surface float",
-        "above 0",
+        "The freeboard must be above 0",
         "The hull of a surface float must extend above the water",
         "the result does not contain the draft of the float"),
     "watch-circle": RuleText("Watch circle", "offset",
-        "radius of the watch circle, √(L² − h²), with the stretched length L and the water depth h "
-        "above the top of the anchor",
-        "`maximum_excursion`; not judged if it is not given",
-        "Worst case √(L² - h²), with the water depth h above the anchor, against the design's own "
-        "`maximum_excursion`",
+        "radius of the watch circle, √(L² − h²), with the stretched length L and the water depth "
+        "h above the top of the anchor",
+        "The radius must not exceed `maximum_excursion`; it is not judged if `maximum_excursion` "
+        "is not given",
+        "The worst case is √(L² - h²), with the water depth h above the anchor; the limit is the "
+        "design's own `maximum_excursion`",
         "the result does not contain the stretched length of the line"),
     "scope": RuleText("Scope", "scope",
         "ratio of cut length to water depth",
-        "none; the scope is only reported",
-        "Reported without a limit",
+        "There is no limit; the scope is only reported",
+        "CALM reports the scope without a limit",
         "the scope is only reported, and has no limit"),
     "as-deployed": RuleText("As deployed", "depth",
         "change in top depth of the upright line due to the depth and lengths of `deployed`",
-        "a warning if the change exceeds the error of a sounding, "
-        "√((1 m)² + (2.3 % of the depth)²)",
-        "IHO S-44, order 2: maximum error of a sounding, at the 95 % level",
+        "There is a warning if the change exceeds the error of a sounding, √((1 m)² + (2.3 % of "
+        "the depth)²)",
+        "IHO S-44, order 2, gives the maximum error of a sounding, at the 95 % level",
         _ONCE),
-    "figures": RuleText("Component values",
-        "",
+    "figures": RuleText("Component values", "",
         "values of pieces and clamps that are impossible for their size and material: buoyancy, "
-        "mass, density, stiffness, strength, depth rating, coefficients of drag",
-        "a failure; only a warning if `warn_tilt` exceeds `max_tilt`, if an instrument floats or a "
-        "`wind_area` is out of proportion; unknown if the line replaces a value by a more "
-        "favourable value without a `source`, or a `material` is unknown or contradicts the `name`",
-        "The rules of `calm catalog check`",
+        "mass, density, stiffness, strength, depth rating, drag coefficients",
+        "Such a value is a failure. There is only a warning if `warn_tilt` exceeds `max_tilt`, if "
+        "an instrument floats, or if a `wind_area` is out of proportion. The state is unknown if "
+        "the line replaces a value by a more favourable value without a `source`, or if a "
+        "`material` is unknown or contradicts the `name`",
+        "The limits are those of `calm catalog check`",
         _ONCE),
     "release-present": RuleText("Release", "",
         "whether a piece of a subsurface line has `role: release`, and whether it frees the line",
-        "unknown if there is no such piece, or if it is clamped or has the name of a shackle, "
-        "swivel, "
-        "rope or the like; a failure if no buoyancy is above the release; a warning for a "
-        "single release in "
-        "more than 100 m of water (no name contains double, dual, twin or pair), for less than 1 m "
-        "between release and anchor, and for a float below the release",
+        "The state is unknown if there is no such piece, or if it is clamped or has the name of a "
+        "shackle, swivel, rope or the like. There is a failure if no buoyancy is above the "
+        "release. There is a warning if the line has a single release in more than 100 m of water "
+        "(no name contains double, dual, twin or pair), if less than 1 m is between release and "
+        "anchor, or if a float is below the release",
         "CALM's own rule: a line that will be recovered needs a release",
         _ONCE),
     "hardware": RuleText("Hardware", "",
         "pieces of the line with `role: connector`",
-        "a warning if the line has none",
+        "There is a warning if the line has none",
         "CALM's own rule: connectors have weight, drag and a strength",
         _ONCE),
     "joints": RuleText("Joints", "",
-        "whether a piece with `role: connector` joins every two adjacent pieces of different kinds "
-        "(wire, chain, rigid); ropes, which are spliced, and wires with a `termination` are exempt",
-        "one warning for all joints of the line; no warning for a line without any hardware",
+        "whether a piece with `role: connector` joins every two adjacent pieces of different "
+        "kinds (wire, chain, rigid); ropes, which are spliced, and wires with a `termination` are "
+        "exempt",
+        "There is one warning for all joints of the line, and no warning for a line without any "
+        "hardware",
         "CALM's own rule: a shackle that is not listed is neither bought nor checked",
         _ONCE),
     "clamp-place": RuleText("Clamp positions", "",
         "clamps on a cable or chain that overlap, or extend beyond its end",
-        "a failure above 5 cm",
+        "There is a failure if the overlap, or the part beyond the end, is longer than 5 cm",
         "Two parts cannot be in the same place",
         _ONCE),
     "serials-and-dates": RuleText("Serial numbers and dates", "",
@@ -270,55 +281,58 @@ RULES = {
         "one component share; codes of a release that is not in the line, or that two releases "
         "share; batteries that run out before the deployment or the calibration, calibrations "
         "after the deployment; a document that is not its latest revision, revisions out of order",
-        "a warning",
+        "There is a warning for each of these",
         "CALM's own rule: the deck sheets and the labels must agree",
         _ONCE),
     "swivel": RuleText("Swivel", "",
         "steel wire that ends at a float, with no chain or rope between them",
-        "a warning, unless there is a swivel between them or at the other end of the wire, or the "
-        "wire is torque-balanced according to `torque_balanced` or, without this key, its name, "
-        "material or note",
-        "CALM's own rule: wire that twists under load kinks when it is unloaded",
+        "There is a warning, unless there is a swivel between them or at the other end of the "
+        "wire, or the wire is torque-balanced. Whether it is torque-balanced is read from "
+        "`torque_balanced` or, without this key, from the name, material or note of the wire",
+        "CALM's own rule: if a wire twists under load, it kinks when the load comes off",
         _ONCE),
     "metals": RuleText("Dissimilar metals", "potential",
-        "adjacent pieces, and clamps with `insulated: false` on their pieces, if both have a metal "
-        "as `material` and neither is `insulated`",
-        "a warning above a potential difference of 0.2 V in sea water",
-        "Galvanic series in sea water (Professional Boatbuilder 100, 2006); 0.15 to 0.2 V in harsh "
-        "surroundings (Pantaenius)",
+        "adjacent pieces, and clamps with `insulated: false` on their pieces, if both have a "
+        "metal as `material` and neither is `insulated`",
+        "There is a warning if the potential difference in sea water is above 0.2 V",
+        "Professional Boatbuilder 100, 2006, gives the galvanic series in sea water; Pantaenius "
+        "gives a limit of 0.15 to 0.2 V in harsh surroundings",
         _ONCE, has_ratio=False),
     "backup": RuleText("Back-up buoyancy", "load",
         "minimum net buoyancy of the section with the release, over all breaks and float losses "
         "that are considered (see below)",
-        "the larger of `backup_margin` (0.1) times the weight lifted, and the drag at "
-        "`minimum_rise_speed`; not judged for a single float that lifts the whole line and is at "
-        "most 50 m above the release; a warning for a surface mooring without floats below its "
-        "buoy",
+        "The net buoyancy must be at least `backup_margin` (0.1) times the weight lifted, and at "
+        "least the drag at `minimum_rise_speed`. There is a warning for a surface mooring without "
+        "floats below its buoy. A single float that lifts the whole line and is at most 50 m "
+        "above the release is not judged; this is CALM's own rule",
         "URI GSO mooring program: if any one link breaks, everything above the release still "
-        "floats; the margin and the 50 m are CALM's own",
+        "floats; CALM itself sets the margin",
         _ONCE),
     "launch-strength": RuleText("Strength in the launch", "load",
         "maximum tension of every piece during the anchor drop",
-        "the smaller of the working load times `launch_working_factor` (1) and the breaking load "
-        "divided by `launch_safety_factor` (2), with the loads used for `strength`",
-        "Anchor-last launch at terminal speed (URI GSO program); the limits are the working load "
-        "and half the breaking load",
+        "The tension must not exceed the working load times `launch_working_factor` (1), nor the "
+        "breaking load divided by `launch_safety_factor` (2); the loads are those of the rule "
+        "`strength`",
+        "As in the URI GSO program, the anchor falls at terminal speed; the limits are the "
+        "working load and half the breaking load",
         _ONCE, figures=("working_load", "breaking_load")),
     "launch-speed": RuleText("Speed at touchdown", "speed",
         "speed of the anchor at touchdown",
-        "a warning above 2.5 m/s",
-        "CALM's own limit: a faster anchor may bury itself or break equipment on it",
+        "There is a warning above 2.5 m/s",
+        "CALM's own limit: an anchor that falls faster may bury itself or break the equipment "
+        "attached to it",
         _ONCE, figures=("kt",)),
     "recovery": RuleText("Rise speed", "speed",
         "rise speed after release, for a line with a release or with its top below the surface",
-        "`minimum_rise_speed` (0.3 m/s); a warning below 0.7 m/s and above 3 m/s",
-        "CALM's own limits: below 0.3 m/s a rise is uncertain, below 0.7 m/s it is slow; "
-        "above 3 m/s floats breach and the line may loop",
+        "The speed must be at least `minimum_rise_speed` (0.3 m/s). There is a warning below 0.7 "
+        "m/s and above 3 m/s",
+        "CALM's own limits: below 0.3 m/s a rise is uncertain, below 0.7 m/s it is slow; above 3 "
+        "m/s floats breach and the line may loop",
         _ONCE),
     "tangling": RuleText("Tangling", "",
         "parts that overtake the parts ahead during the descent or the ascent, in loops of 2 m or "
         "more",
-        "a warning",
+        "There is a warning",
         "CALM's own rule: parts that overtake others may tangle with them",
         _ONCE),
 }  # fmt: skip

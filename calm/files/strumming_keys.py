@@ -1,4 +1,4 @@
-"""Solver key `strumming:`: increase of the drag coefficient Cn of cables by vibration.
+"""Solver key `strumming:`: increase of the drag coefficient Cn of cables due to vibration.
 
 ===================================== ==========================================
 written                               read as
@@ -48,9 +48,9 @@ class ConstantCn(Model):
 class BourgetMarichalKeys(Model):
     """Strumming model for towed cables by Bourget & Marichal.
 
-    The amplitude a of a cable of diameter D is a/D = a1 + b1 φ + c1 φ², with φ in degrees. c0 is
-    Cn at rest. The defaults of the coefficients are those of
-    `calm.physics.strumming.BourgetMarichal`.
+    The vibration amplitude a of a cable with the diameter D follows from a/D = a1 + b1 φ + c1 φ²,
+    with the angle φ between cable and flow in degrees. The coefficient c0 is Cn without vibration.
+    The defaults of the coefficients are those of `calm.physics.strumming.BourgetMarichal`.
     """
 
     model_config = ConfigDict(json_schema_extra={"required": ["model"]})

@@ -19,7 +19,7 @@ _TOO_WIDE = "above 25 %, the largest standard deviation; give a pair, the 5 and 
 
 @dataclass(frozen=True)
 class Spread:
-    """Uncertainty of a value, relative to the value; for an angle, it is in degrees.
+    """Uncertainty of a value, relative to the value; uncertainties of angles are in degrees.
 
     Attributes
     ----------
@@ -33,7 +33,7 @@ class Spread:
 
 @dataclass(frozen=True)
 class SpreadOf:
-    """Annotation of a key of `uncertainty:` with the values that are allowed.
+    """Annotation that gives a key of `uncertainty:` its allowed values.
 
     Attributes
     ----------

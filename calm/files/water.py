@@ -46,7 +46,7 @@ class TableKeys(Model):
 
 
 class SeaWaterKeys(Model):
-    """Temperature [°C] and practical salinity of sea water, each constant or a table over depth."""
+    """Temperature [°C] and practical salinity of sea water, each constant or tabulated by depth."""
 
     temperature: Annotated[
         Annotated[float, QuantityField(**vars(profile_tables.TEMPERATURE)), Tag("constant")]
@@ -213,7 +213,7 @@ def _falls(table: profile_tables.DepthTable) -> Iterator[str]:
 
 
 def check_density(section: SourceMapping) -> None:
-    """Record the mistakes in the tables of `density:`, even if other keys in it are wrong."""
+    """Record the mistakes in the tables of `density:`, even if other keys are wrong."""
     given = section.data.get("density")
     density = _RANGES["air" if section.data.get("fluid") == "air" else "water"]
     table = table_of(given)

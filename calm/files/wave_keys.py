@@ -25,7 +25,7 @@ from calm.records.sea_states import (
 
 
 class SwellKeys(Model):
-    """Keys of `swell:`, which describe long waves from distant winds that add to the wind sea."""
+    """Keys of `swell:`, which describe a swell in addition to the wind sea."""
 
     significant_height: Annotated[float, QuantityField("length", above=0)] = described(
         "Hs of the swell", "2 m"

@@ -130,7 +130,7 @@ class SourceMapping:
         return replace(self, problems=problems)
 
     def over(self, base: SourceMapping, *, dropping: frozenset[str] = frozenset()) -> SourceMapping:
-        """Return a copy of this mapping with a base, whose keys in `dropping` are ignored."""
+        """Return a copy of this mapping with a base; keys of the base in `dropping` are ignored."""
         kept = {key: value for key, value in base.data.items() if key not in dropping}
         return replace(self, data={**kept, **self.data}, base=base)
 
@@ -342,7 +342,7 @@ def _example(model: type[BaseModel], loc: tuple[int | str, ...]) -> str:
     field = model.model_fields.get(str(loc[0])) if loc else None
     inside = {key for one in _models_in(field and field.annotation) for key in one.model_fields}
     if loc[1:] and (len(loc) > 2 or loc[1] in inside or isinstance(loc[1], int)):
-        field = None  # below the key, not a form of its value
+        field = None  # the location is inside the value of the key
     shape = field.examples[0] if field is not None and field.examples else None
     shape = shape[:1] if isinstance(shape, list) else shape
     return f", as `{loc[0]}: {_flow(shape)}`" if isinstance(shape, (dict, list)) else ""

@@ -91,8 +91,8 @@ def _mistake(lines: list[str], error: MarkedYAMLError) -> Mistake | None:
 def _colon(lines: list[str], mark: Mark) -> Mistake | None:
     """Explain a misplaced colon.
 
-    It may be the second in its line, or in a line below one without a colon, or in a line with too
-    much indentation.
+    The colon may be the second in its line, in a line below a line without a colon, or in a line
+    that is indented too far.
     """
     line = lines[mark.line]
     if key := _KEY.match(line[: mark.column]):

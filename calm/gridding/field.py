@@ -3,13 +3,14 @@
 The field is a mean profile plus an anomaly, both estimated from the record. The standard deviation
 of the anomaly depends on depth. Its correlation is a Matérn function of order 3/2 along depth and
 an exponential function in time (Rasmussen and Williams, Gaussian Processes for Machine Learning,
-2006, eq. 4.17 and 4.18; mean and variance eq. 2.25 and 2.26). Part of the variance is uncorrelated:
-scales below the sensor spacing, and sensor noise.
+2006, eq. 4.17 and 4.18; mean and variance eq. 2.25 and 2.26). The uncorrelated part of the variance
+is due to scales below the sensor spacing, and to sensor noise.
 
-An error in the depth of the instruments causes an error that equals the depth error times the local
-gradient. It is added to the standard deviation of the result without averaging over instruments,
-because it may be common to the line for the whole record. Half of its variance also counts as
-independent noise of each instrument, which gives more weight to instruments of well-known depth.
+An error in the depth of an instrument causes an error in its values, which equals the depth error
+times the local gradient. This error is added to the standard deviation of the result without
+averaging over instruments, because it may be common to all instruments for the whole record. Half
+of its variance also counts as independent noise of each instrument, which gives more weight to
+instruments of well-known depth.
 """
 
 from __future__ import annotations
@@ -23,32 +24,20 @@ from numpy.typing import NDArray
 from calm.errors import UsageError
 from calm.gridding.samples import Floats, Samples
 
-NODES = 60
-"""Number of depths of the mean profile."""
-TIMES_FOR_SCALES = 60
-"""Number of times used to fit the scales."""
-TIMES_LEFT_OUT = 240
-"""Number of times at which sensors are left out in turn."""
-BLOCK = 128
-"""Number of times solved together, which limits the memory."""
-SAMPLES_FOR_PROFILE = 30_000
-"""Maximum number of samples used for the mean profile."""
-OWN_SHARE = 0.5
-"""Share of the variance of depth errors that is independent between instruments."""
-REMAINING = 0.5
-"""Share of variance remaining at a level, above which a value is poorly constrained."""
-HALF_WIDTH = 1.96
-"""Half the width of an interval of 95 %, in standard deviations."""
+NODES = 60  # number of depths of the mean profile
+TIMES_FOR_SCALES = 60  # number of times used to fit the scales
+TIMES_LEFT_OUT = 240  # number of times at which sensors are left out in turn
+BLOCK = 128  # number of times solved together, which limits the memory
+SAMPLES_FOR_PROFILE = 30_000  # maximum number of samples used for the mean profile
+OWN_SHARE = 0.5  # share of the variance of depth errors that is independent between instruments
+REMAINING = 0.5  # share of variance remaining at a level, above which a value is poorly constrained
+HALF_WIDTH = 1.96  # half the width of an interval of 95 %, in standard deviations
 
-INTERPOLATED, DOUBTFUL, MISSING = 8, 3, 9
-"""OceanSITES quality flags of the output."""
+INTERPOLATED, DOUBTFUL, MISSING = 8, 3, 9  # OceanSITES quality flags of the output
 
 
 class Scales(NamedTuple):
-    """Correlation scales in depth [m] and time [s], and share of uncorrelated variance.
-
-    The attribute `share` is the uncorrelated part of the variance divided by the whole variance.
-    """
+    """Correlation scales in depth [m] and time [s], and share of uncorrelated variance."""
 
     depth: float
     time: float
@@ -57,10 +46,7 @@ class Scales(NamedTuple):
 
 @dataclass(frozen=True)
 class RecordProfile:
-    """Mean and standard deviation of a record as functions of depth.
-
-    The functions are given by values at `node` depths [m], and are linear between these depths.
-    """
+    """Mean and standard deviation of a record, linear between the depths `node` [m]."""
 
     node: Floats
     mean: Floats
@@ -77,30 +63,21 @@ class RecordProfile:
 
 @dataclass(frozen=True)
 class GriddedQuantity:
-    """Samples of a quantity, and the parameters of the field fitted to the samples.
-
-    Attributes
-    ----------
-    samples, profile, scales : samples, mean profile and correlation scales
-    noise : standard deviation of sensor noise, in the unit of the quantity
-    in_time : whether the estimate at a time also uses the samples at the neighbouring times
-    beyond : factor by which standard deviations are multiplied above the uppermost and below the
-        lowest sensor; it is found by withholding each sensor in turn
-    """
+    """Samples of a quantity, and the parameters of the field fitted to the samples."""
 
     samples: Samples
     profile: RecordProfile
     scales: Scales
-    noise: float
+    noise: float  # standard deviation of sensor noise, in the unit of the quantity
+    # whether the estimate at a time also uses the samples at the neighbouring times
     in_time: bool = True
+    # factor on the standard deviations above the uppermost and below the lowest sensor, from
+    # withholding each sensor in turn
     beyond: float = 1.0
 
 
 class LevelPosterior(NamedTuple):
-    """Posterior mean and standard deviation at given depths.
-
-    `left` is the share of the prior variance that remains.
-    """
+    """Posterior mean and standard deviation, and the share of the prior variance that is left."""
 
     mean: Floats
     deviation: Floats
@@ -118,28 +95,16 @@ class LevelValues(NamedTuple):
 def field_of(samples: Samples, noise: float, *, in_time: bool = True) -> GriddedQuantity:
     """Fit a field to the samples of a quantity, with the most likely correlation scales.
 
-    Parameters
-    ----------
-    samples : samples from at least two instruments
-    noise : standard deviation of sensor noise, in the unit of the quantity
-    in_time : whether the estimate at a time also uses the samples at the neighbouring times
-
-    Raises
-    ------
-    UsageError
-        Fewer than two instruments have good values.
+    The sensor noise has the standard deviation `noise`; `in_time` is as in `GriddedQuantity`.
     """
     known = np.isfinite(samples.value)
     if int(known.any(axis=0).sum()) < 2:
         raise UsageError("fewer than two instruments of the line have good values")
-    rough = GriddedQuantity(
-        samples, profile_of(samples, noise), Scales(1.0, 1.0, 0.5), noise, in_time
-    )
+    profile = profile_of(samples, noise)
+    rough = GriddedQuantity(samples, profile, Scales(1.0, 1.0, 0.5), noise, in_time)
     most = np.argsort(-known.sum(axis=1), kind="stable")[: max(len(known) // 2, TIMES_FOR_SCALES)]
-    times = np.sort(most)[
-        np.linspace(0, len(most) - 1, min(TIMES_FOR_SCALES, len(most))).astype(int)
-    ]
-    found = replace(rough, scales=_likeliest(rough, np.unique(times)))
+    few = np.linspace(0, len(most) - 1, min(TIMES_FOR_SCALES, len(most))).astype(int)
+    found = replace(rough, scales=_likeliest(rough, np.unique(np.sort(most)[few])))
     every = max(len(known) // TIMES_LEFT_OUT, 1)
     return replace(found, beyond=_beyond(found, np.arange(0, len(known), every)))
 
@@ -147,9 +112,8 @@ def field_of(samples: Samples, noise: float, *, in_time: bool = True) -> Gridded
 def profile_of(samples: Samples, noise: float) -> RecordProfile:
     """Return the mean and standard deviation of a record as functions of depth.
 
-    The mean is a local linear fit, and the standard deviation is the root of a local mean of
-    squared deviations. Both use Gaussian weights as wide as the sensor spacing. `noise` is the
-    smallest standard deviation.
+    The mean is a local linear fit, and the standard deviation, at least `noise`, the root of a
+    local mean of squared deviations, both with Gaussian weights as wide as the sensor spacing.
     """
     known = np.isfinite(samples.value)
     depth, value = samples.depth[known], samples.value[known]
@@ -167,10 +131,7 @@ def profile_of(samples: Samples, noise: float) -> RecordProfile:
 
 
 def spacing(samples: Samples) -> float:
-    """Return the median vertical spacing of the instruments [m].
-
-    Spacings between instruments that are almost at the same depth are ignored.
-    """
+    """Return the median vertical spacing of instruments that are not nearly at one depth [m]."""
     place = np.sort(np.nanmean(samples.depth[:, np.isfinite(samples.value).any(axis=0)], axis=0))
     apart = np.diff(place)
     wide = apart[apart > 0.2 * (place[-1] - place[0]) / max(len(apart), 1)]
@@ -232,13 +193,7 @@ def _block(field: GriddedQuantity, times: NDArray[np.int64]) -> _Block:
 
 
 def _slopes(samples: Samples, times: NDArray[np.int64], at: Floats) -> tuple[Floats, Floats]:
-    """Estimate (n, k) vertical gradients from the surrounding sensors, and their depth errors [m].
-
-    Parameters
-    ----------
-    times : (n,) indices of the samples' times
-    at : (n, k) depths [m]; NaN is treated as 0
-    """
+    """Estimate vertical gradients at depths (n, k), and depth errors, from nearby sensors [m]."""
     depth, value, error = (
         table[times][:, None, :] for table in (samples.depth, samples.value, samples.deviation)
     )
@@ -254,24 +209,17 @@ def _slopes(samples: Samples, times: NDArray[np.int64], at: Floats) -> tuple[Flo
 
 
 def _correlation(a: Floats, b: Floats, s: Floats, t: Floats, scales: Scales) -> Floats:
-    """Return correlations (n, i, j) of depths a (n, i) at times s (n, i) with b (n, j) at t (n, j).
+    """Return correlations (n, i, j) of depths a at times s (n, i) with depths b at times t (n, j).
 
     They are multiplied by the correlated share of the variance.
     """
     far = 3.0**0.5 / scales.depth * np.abs(a[:, :, None] - b[:, None, :])
     apart = np.abs(s[:, :, None] - t[:, None, :]) / scales.time
-    whole: Floats = (1.0 - scales.share) * (1.0 + far) * np.exp(-far - apart)
-    return whole
+    return np.asarray((1.0 - scales.share) * (1.0 + far) * np.exp(-far - apart))
 
 
 def posterior(field: GriddedQuantity, times: NDArray[np.int64], levels: Floats) -> LevelPosterior:
-    """Compute the posterior mean and standard deviation (n, k) at n times and k levels.
-
-    Parameters
-    ----------
-    times : (n,) indices of the times among those of the samples
-    levels : (k,) depths of the levels [m], or (n, k) if they vary with time
-    """
+    """Compute the posterior (n, k) at times of given indices (n,) and depths (k,) or (n, k) [m]."""
     block = _block(field, times)
     level = np.broadcast_to(np.atleast_2d(levels), (len(times), np.atleast_2d(levels).shape[1]))
     spread = field.profile.deviation_at(level)
@@ -289,16 +237,10 @@ def posterior(field: GriddedQuantity, times: NDArray[np.int64], levels: Floats) 
 
 
 def estimate(field: GriddedQuantity, levels: Floats, times: NDArray[np.int64]) -> LevelValues:
-    """Estimate the values of a quantity at fixed levels for given times.
+    """Estimate the values of a quantity at levels (k,) [m] for times with the indices (n,).
 
     Values between the sensors are flagged as interpolated. Values beyond the sensors, and values
-    that the record constrains poorly, are flagged as doubtful. Values that are both beyond the
-    sensors and poorly constrained are missing.
-
-    Parameters
-    ----------
-    levels : (k,) depths of the levels [m]
-    times : (n,) indices of the times among those of the samples
+    that the record constrains poorly, are doubtful; values that are both are missing.
     """
     known = np.isfinite(field.samples.value[times])
     depth = np.where(known, field.samples.depth[times], np.nan)
@@ -318,7 +260,8 @@ def _likeliest(field: GriddedQuantity, times: NDArray[np.int64]) -> Scales:
     """Find the most likely correlation scales, from the samples at some times.
 
     A weak prior determines scales that the record does not constrain: a quarter of the line, six
-    time steps, and 2 % uncorrelated variance, each within a factor of about five.
+    time steps, and 2 % uncorrelated variance. The standard deviation of the prior is a factor of
+    about five for each scale.
     """
     from scipy.optimize import minimize
 
@@ -350,16 +293,12 @@ def _likeliest(field: GriddedQuantity, times: NDArray[np.int64]) -> Scales:
 
 
 def left_out(field: GriddedQuantity, times: NDArray[np.int64]) -> tuple[Floats, Floats]:
-    """Predict the value of each sensor from the other sensors, at n times.
+    """Predict the value of each sensor from the other sensors, at times with the indices (n,).
 
     The values of the sensor at the neighbouring times are also withheld. The prediction follows
     from the sensor's block in the inverse covariance matrix (Rasmussen and Williams, eq. 5.12,
-    extended to blocks).
-
-    Returns
-    -------
-    Measured minus predicted values (n, s), and their standard deviations (n, s). Both are NaN if
-    the sensor has no value, or no other sensor has a value.
+    extended to blocks). Return measured minus predicted values (n, s) and their standard
+    deviations, NaN if the sensor has no value, or no other sensor has a value.
     """
     block = _block(field, times)
     sensors = field.samples.value.shape[1]
@@ -371,24 +310,19 @@ def left_out(field: GriddedQuantity, times: NDArray[np.int64]) -> tuple[Floats, 
     for j in range(sensors):
         own = np.arange(count) * sensors + j
         part = np.linalg.inv(inverse[:, own[:, None], own[None, :]])
-        known = block.known[:, own[here]] & (
-            block.known.sum(axis=1) > block.known[:, own].sum(axis=1)
-        )
-        residual[:, j] = np.where(
-            known, np.einsum("ni,ni->n", part[:, here], weighted[:, own]), np.nan
-        )
+        others = block.known.sum(axis=1) > block.known[:, own].sum(axis=1)
+        known = block.known[:, own[here]] & others
+        off = np.einsum("ni,ni->n", part[:, here], weighted[:, own])
+        residual[:, j] = np.where(known, off, np.nan)
         spread[:, j] = np.where(known, np.sqrt(np.maximum(part[:, here, here], 0.0)), np.nan)
     return residual, spread
 
 
-MIN_RESIDUALS = 20
-"""Minimum number of residuals of a sensor for a factor."""
+MIN_RESIDUALS = 20  # minimum number of residuals of a sensor for a factor
 
 
 def _beyond(field: GriddedQuantity, times: NDArray[np.int64]) -> float:
-    """Find the factor by which bands must be widened to cover 95 % of a sensor beyond all others,
-    if each sensor is withheld in turn.
-    """
+    """Find the factor by which bands of a sensor beyond all others must be widened for 95 %."""
     residual, spread = left_out(field, times)
     place = np.where(np.isfinite(residual), field.samples.depth[times], np.nan)
     upper, lower = (f.reduce(place, axis=1)[:, None] for f in (np.fmin, np.fmax))

@@ -53,8 +53,7 @@ class GriddedRecord:
     fields : samples and fitted field, by the name of the quantity
     names : variable in the dataset for each quantity
     levels : (k,) depths of the levels [m]
-    cards : summary of each file that was read
-    notes : sentences that point out oddities in the input
+    cards, notes : summary of each file that was read, and sentences on oddities in the input
     layout : layout of the gridded file
     """
 
@@ -66,21 +65,12 @@ class GriddedRecord:
     layout: ResultLayout
 
     def write(
-        self,
-        output: str | Path,
+        self, output: str | Path,
         progress: Callable[[Sequence[int]], Iterable[int]] = lambda each: each,
-    ) -> None:
+    ) -> None:  # fmt: skip
         """Compute the values and write them to a NetCDF file, as ``calm grid -o`` does.
 
-        Parameters
-        ----------
-        output : path of the file
-        progress : function that wraps the iteration over blocks of times, to show progress
-
-        Raises
-        ------
-        UsageError
-            The file cannot be written.
+        `progress` wraps the iteration over blocks of times.
         """
         write_grid(self.layout, self.fields, self.levels, self.names, Path(output), progress)
 
@@ -93,15 +83,10 @@ class GriddedRecord:
                 return kept.load()
 
     def plot(self, quantity: str | None = None, ax: Any = None) -> Any:
-        """Draw a section of a quantity over time and depth, and return the axes.
+        """Draw a section of a quantity over time and depth with matplotlib, and return the axes.
 
-        Lines show the depths of the instruments. Doubtful values are drawn in pale colours. The
-        method requires matplotlib.
-
-        Parameters
-        ----------
-        quantity : name of the quantity, such as `temperature`; by default the first quantity
-        ax : matplotlib axes in which to draw; by default new axes
+        Lines show the depths of the instruments; doubtful values are pale. By default, the first
+        quantity is drawn in new axes.
         """
         if ax is None:
             from matplotlib.figure import Figure
@@ -128,8 +113,7 @@ class GriddedRecord:
         return "\n".join([*lines, *([f"{len(self.notes)} notes"] if self.notes else [])])
 
 
-MOST_DRAWN = 600
-"""Maximum number of times drawn in a section; longer records are subsampled."""
+MOST_DRAWN = 600  # maximum number of times drawn in a section; longer records are subsampled
 
 
 def draw_section(
@@ -137,7 +121,7 @@ def draw_section(
 ) -> Any:
     """Draw values (n, k) over time and depth, with the depths of the instruments as lines.
 
-    Doubtful values are drawn in pale colours. Return the mesh that matplotlib has drawn.
+    Doubtful values are pale. Return the mesh of matplotlib.
     """
     every = max(len(values) // MOST_DRAWN, 1)
     time = samples.time[::every].astype("datetime64[s]").astype(object)
@@ -217,22 +201,8 @@ def read_gridded(
 ) -> GriddedRecord:
     """Read the files of a mooring and fit the field of each quantity.
 
-    Parameters
-    ----------
-    depths : path of a result of ``calm motion``
-    values : paths of files or folders, or texts ``LABEL=PATH``
-    levels : (k,) depths of the levels [m]
-    step, averaged : averaging interval, and this interval as text; if both are None, values are
-        averaged about the times of `depths`
-    variables : names of quantities, separated by commas; None for all quantities
-    method : one of `METHODS`
-    flags : quality flags of the values that are used, separated by commas
-    report, show : functions that receive each note and each summary card as soon as it is known
-
-    Raises
-    ------
-    InputError, UsageError
-        As in `grid`.
+    The arguments are those of `grid`, as texts of the command. Each note and each summary card is
+    passed to `report` or `show` as soon as it is known.
     """
     if method not in METHODS:
         raise UsageError(not_among("--method", method, METHODS))
@@ -252,10 +222,8 @@ def read_gridded(
         show(card)
     for text in dict.fromkeys(f"{one.source}: {one.note}" for one in every if one.note):
         note(text)
-    if variables is not None:
-        for name in wanted:
-            if not series[name]:
-                raise UsageError(f"--variables: no file holds {name}")
+    if variables is not None and (lacking := [name for name in wanted if not series[name]]):
+        raise UsageError(f"--variables: no file holds {lacking[0]}")
     fields = fields_of(places, series, step, note, in_time=method == METHODS[0])
     archived = variables is not None and variables.isupper()
     names = {one: QUANTITIES_MEASURED[one].archive if archived else one for one in fields}
@@ -275,12 +243,6 @@ def fields_of(
     """Fit a field to each quantity, and return the fields by the name of the quantity.
 
     A quantity with too few instruments is omitted, and `note` is called with the reason.
-
-    Raises
-    ------
-    UsageError
-        No quantity remains, depths and values do not overlap in time, or no instrument belongs to
-        the line.
     """
     matched = {name: points_of(each, places.places) for name, each in series.items() if each}
     for text in dict.fromkeys(text for _, texts in matched.values() for text in texts):
@@ -311,8 +273,6 @@ def sample_notes(
     points: Mapping[int, int],
 ) -> Iterator[str]:
     """Yield sentences about problems in the samples of a quantity.
-
-    The problems are files that seem to be exchanged, excluded values, and series without values.
 
     Files seem to be exchanged if pressures do not agree with the depth of the instrument, or if the
     mean temperatures would change steadily with depth only after an exchange.

@@ -29,16 +29,11 @@ from calm.units import QuantityError, parse_quantity
 from calm.version import __version__
 
 MOST_LEVELS = 5000
+_KEYWORDS = ("OCEAN TEMPERATURE", "OCEAN CIRCULATION", "SALINITY/DENSITY")
 
 
 def parse_levels(text: str) -> NDArray[np.float64]:
-    """Parse levels [m] from ``first:step:last``, or from several levels separated by commas.
-
-    Raises
-    ------
-    UsageError
-        The text has neither form, the levels do not increase, or there are too many levels.
-    """
+    """Parse levels [m] from ``first:step:last``, or from several levels separated by commas."""
     given, wanted = text[:40], "write FIRST:STEP:LAST in metres, such as 0:20:1500, or 50,100,250"
     by_step = text.count(":") == 2
     try:
@@ -56,13 +51,7 @@ def parse_levels(text: str) -> NDArray[np.float64]:
 
 
 def check_levels(given: Sequence[float] | NDArray[np.float64]) -> NDArray[np.float64]:
-    """Check levels [m] and return them as an array.
-
-    Raises
-    ------
-    UsageError
-        The levels do not increase, or a level is above the sea surface.
-    """
+    """Check that levels [m] increase from the sea surface, and return them as an array."""
     levels = np.asarray(given, np.float64)
     if levels.ndim != 1 or not levels.size or not (np.diff(levels, prepend=-np.inf) > 0.0).all():
         raise UsageError("--levels: the depths must increase, such as 50,100,250")
@@ -72,7 +61,6 @@ def check_levels(given: Sequence[float] | NDArray[np.float64]) -> NDArray[np.flo
 
 
 def _metres(part: str) -> float:
-    """Parse a length [m] with or without unit; raise QuantityError if it is invalid."""
     plain = "" if delimited.NUMBER.fullmatch(part.strip()) is None else " m"
     return parse_quantity(f"{part}{plain}", "length", usual_unit="m")
 
@@ -88,15 +76,8 @@ def grid_layout(
 ) -> netcdf.ResultLayout:
     """Return the layout of a gridded file.
 
-    Parameters
-    ----------
-    fields : field of each quantity, by the name of the quantity
-    levels : depths of the levels [m]
-    depths : depths of the line over time
-    inputs : names of the input files, each with its hash
-    names : name of the variable in the file, by the name of the quantity
-    averaged : averaging interval as text; None if no interval is given
-    cards : summary of each file that was read
+    `inputs` are the names and hashes of the input files, `names` the variables of the quantities,
+    and `averaged` is the averaging interval as text.
     """
     time = next(iter(fields.values())).samples.time
     title = str(depths.attributes.get("title", "mooring")).partition(": ")[0]
@@ -114,8 +95,8 @@ def grid_layout(
         quantity, called = QUANTITIES_MEASURED[name], names[name]
         about: netcdf.Attributes = {
             "standard_name": quantity.standard_name, "long_name": quantity.long_name,
-            "units": quantity.units, "coordinates": where.strip(), "coverage_content_type":
-            "physicalMeasurement", "comment": method_sentence(field),
+            "units": quantity.units, "coordinates": where.strip(),
+            "coverage_content_type": "physicalMeasurement", "comment": method_sentence(field),
         }  # fmt: skip
         spread: netcdf.Attributes = {
             "standard_name": f"{quantity.standard_name} standard_error",
@@ -133,6 +114,7 @@ def grid_layout(
         flagged[called] = [f"{called}_sd"]
     means = "time: point" if averaged is None else f"time: mean (interval: {averaged})"
     before = [str(depths.attributes[key]) for key in ("history",) if key in depths.attributes]
+    made = f"{written()} calm {__version__} grid: {', '.join(inputs)}"
     labels = list(dict.fromkeys(label for one in fields.values() for label in one.samples.label))
     attributes: netcdf.Attributes = {
         **ARCHIVED,
@@ -146,27 +128,18 @@ def grid_layout(
             f"{len(labels)} instruments, mapped to the levels by a Gaussian process over depth and "
             "time, each value with its standard deviation."
         ),
-        "keywords": "EARTH SCIENCE > OCEANS > OCEAN TEMPERATURE, EARTH SCIENCE > OCEANS > "
-        "OCEAN CIRCULATION, EARTH SCIENCE > OCEANS > SALINITY/DENSITY",
+        "keywords": ", ".join(f"EARTH SCIENCE > OCEANS > {one}" for one in _KEYWORDS),
         "keywords_vocabulary": GCMD,
         "source": "subsurface mooring",
         "processing_level": "Data interpolated",
-        "comment": (
-            "Flag 8: between instruments; 3: beyond the instruments, or poorly constrained; 9: no "
-            "value"
-        ),
+        "comment": "Flag 8: between instruments; 3: beyond the instruments, or poorly constrained; "
+        "9: no value",
         "QC_indicator": "mixed",
         "instrument": ", ".join(labels),
         "calm": __version__,
         "date_created": written(),
         "date_modified": written(),
-        "history": "\n".join(
-            [
-                *before,
-                f"{written()} calm {__version__} grid: {', '.join(inputs)}",
-                *(card.sentence() for card in cards),
-            ]
-        ),
+        "history": "\n".join([*before, made, *(card.sentence() for card in cards)]),
     }
     if depths.place:
         attributes["featureType"] = "timeSeriesProfile"
@@ -178,7 +151,7 @@ def grid_layout(
 def method_sentence(field: GriddedQuantity) -> str:
     """Return a sentence that describes the gridding of a quantity, with the correlation scales."""
     scales = field.scales
-    time = "" if not field.in_time else f" and {scales.time / 3600.0:.3g} h in time"
+    time = f" and {scales.time / 3600.0:.3g} h in time" * field.in_time
     return (
         f"Gaussian process about the mean profile of the record, correlated over "
         f"{scales.depth:.3g} m along depth{time}; {100.0 * scales.share:.2g} % of the variance is "
@@ -194,20 +167,7 @@ def write_grid(
     output: Path,
     shown: Callable[[Sequence[int]], Iterable[int]] = lambda each: each,
 ) -> None:
-    """Write a gridded file block by block.
-
-    The file gets its final name only when it is complete.
-
-    Parameters
-    ----------
-    names : name of the variable in the file, by the name of the quantity
-    shown : function that wraps the iteration over blocks of times, to show progress
-
-    Raises
-    ------
-    UsageError
-        The file cannot be written, for example because the disk is full.
-    """
+    """Write a gridded file block by block; `shown` wraps the iteration over the blocks."""
     time = next(iter(fields.values())).samples.time
     capitals = all(one.isupper() for one in names.values())
     deviation, flag = ("_SD", "_QC") if capitals else ("_sd", "_qc")

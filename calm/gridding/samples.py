@@ -27,35 +27,20 @@ _POINTS = (("clamp", "clamp_depth", "clamp_depth_sd"), ("component", "depth_top"
 
 @dataclass(frozen=True)
 class MooringDepths:
-    """Depths of p points of a line at n times.
+    """Depths of p points of a line at n times."""
 
-    Attributes
-    ----------
-    time : (n,) increasing times, with a resolution of a nanosecond
-    places : the points, each with a depth in weak currents (5th percentile of its depths)
-    depth, deviation : (n, p) depths and standard deviations [m]
-    place : latitude and longitude of the mooring [degrees]; empty if unknown
-    seabed : depth of the last piece, which is the anchor [m]; NaN if unknown
-    attributes : global attributes of the file
-    """
-
-    time: NDArray[np.datetime64]
+    time: NDArray[np.datetime64]  # (n,) increasing times, with a resolution of a nanosecond
+    # the points, each with a depth in weak currents (5th percentile of its depths)
     places: LinePlaces
-    depth: Floats
-    deviation: Floats
-    place: tuple[float, ...]
-    seabed: float
-    attributes: Mapping[str, Any]
+    depth: Floats  # (n, p) depths [m]
+    deviation: Floats  # (n, p) standard deviations of the depths [m]
+    place: tuple[float, ...]  # latitude and longitude of the mooring [degrees]; empty if unknown
+    seabed: float  # depth of the last piece, which is the anchor [m]; NaN if unknown
+    attributes: Mapping[str, Any]  # global attributes of the file
 
 
 def read_depths(path: Path) -> MooringDepths:
-    """Read the depths from a result file of `calm motion`.
-
-    Raises
-    ------
-    InputError
-        The file is not a result of `calm motion`, or contains no known depth.
-    """
+    """Read the depths from a result file of `calm motion`."""
     with opened(path) as dataset:
         return _understood(dataset, path)
 
@@ -95,44 +80,28 @@ def _understood(dataset: Dataset, path: Path) -> MooringDepths:
     )
 
 
-ANOTHER_PLACE = 30.0
-"""Difference between pressure [dbar] and depth [m] that indicates another instrument."""
+ANOTHER_PLACE = 30.0  # difference of pressure [dbar] and depth [m] of another instrument
 
-MOST = 5_000_000
-"""Maximum number of times written: one a second for two months."""
+MOST = 5_000_000  # maximum number of times written: one a second for two months
 
 
 @dataclass(frozen=True)
 class Samples:
-    """Values of one quantity at n times, from s instruments listed from the top down.
+    """Values of one quantity at n times, from s instruments listed from the top down."""
 
-    Attributes
-    ----------
-    time : (n,) increasing times
-    label : (s,) labels of the instruments
-    depth, deviation : (n, s) depths of the instruments and their standard deviations [m]
-    value : (n, s) values in the unit of the quantity; NaN if not measured
-    """
-
-    time: Times
-    label: tuple[str, ...]
-    depth: Floats
-    deviation: Floats
-    value: Floats
+    time: Times  # (n,) increasing times
+    label: tuple[str, ...]  # (s,) labels of the instruments
+    depth: Floats  # (n, s) depths of the instruments [m]
+    deviation: Floats  # (n, s) standard deviations of the depths [m]
+    value: Floats  # (n, s) values in the unit of the quantity; NaN if not measured
 
 
 def common_times(
     depths: MooringDepths, series: Sequence[InstrumentSeries], step: np.timedelta64 | None
 ) -> Times:
-    """Choose the times of the field.
+    """Choose the times of the field, in the period in which both depths and values are known.
 
-    The times are those of the depths or, if a step is given, are equally spaced. They cover the
-    period in which both depths and values are known.
-
-    Raises
-    ------
-    UsageError
-        Depths and values do not overlap in time, or the step is longer than the overlap.
+    They are the times of the depths or, if a step is given, are equally spaced.
     """
     known = [one.time[np.isfinite(one.value)] for one in series]
     known = [one for one in known if len(one)]
@@ -165,19 +134,10 @@ def common_times(
 def gather(
     depths: MooringDepths, series: Sequence[InstrumentSeries], points: dict[int, int], time: Times
 ) -> Samples:
-    """Average the values around each time, and the depths at which the values were measured.
+    """Average the values around each time (n,), and the depths at which the values were measured.
 
-    Each value counts for the nearest time, if this time is within half a time step.
-
-    Parameters
-    ----------
-    points : mapping from the index of a series to the index of the point of the line
-    time : (n,) times from `common_times`
-
-    Raises
-    ------
-    UsageError
-        Two series belong to the same instrument.
+    Each value counts for the nearest time, if this time is within half a time step. `points` is the
+    point of the line for each series by index.
     """
     still = depths.places.still
     each = [(at, series[i].below) for i, at in points.items()]
@@ -209,6 +169,5 @@ def gather(
             sums = np.bincount(bin_of[good], known[good], minlength=len(time))
             with np.errstate(invalid="ignore"):
                 table[:, column] = sums / count
-    return Samples(
-        time, tuple(depths.places.label[points[i]] for i in order), depth, deviation, value
-    )
+    labels = tuple(depths.places.label[points[i]] for i in order)
+    return Samples(time, labels, depth, deviation, value)

@@ -19,25 +19,17 @@ from calm.motion.matching import CERTAIN, in_order, named_point, places_of
 from calm.records.current_terms import parse_time, time_text
 from calm.records.instrument_series import Identity
 
+# least reported difference of nominal and still-water depth: share of the depth, and metres
 ASTRAY = 0.02, 5.0
-"""Difference between nominal and still-water depth above which it is reported: as a share of the
-depth, and in metres.
-"""
 _ITEMS = ("deployed", "items")
 
 
 @dataclass(frozen=True)
 class AssignedInstruments:
-    """A mooring file to which the instruments of a list have been assigned.
+    """A mooring file to which the instruments of a list have been assigned."""
 
-    Attributes
-    ----------
-    text : new text of the file
-    assigned : one sentence for each instrument that was assigned to a part of the line
-    doubts : one sentence for each doubtful match and each instrument without a part
-    """
-
-    text: str
+    text: str  # new text of the file
+    # sentences on the assigned instruments, and on doubtful or missing matches
     assigned: tuple[str, ...]
     doubts: tuple[str, ...]
 
@@ -45,16 +37,8 @@ class AssignedInstruments:
 def assign_instruments(path: Path, list_of_instruments: Path) -> AssignedInstruments:
     """Copy serial numbers and clock errors from an instrument list to `deployed` of a mooring file.
 
-    Instruments are matched to parts of the line by name or serial number. Instruments without a
-    match are assigned by nominal depth, in order down the line. The rest of the file is unchanged.
-
-    Raises
-    ------
-    InputError
-        A file has mistakes, or the list has an unknown format.
-    UsageError
-        The mooring is a tow or has several legs, the order of the instruments is ambiguous, or the
-        YAML of the file cannot be edited automatically.
+    Instruments are matched to parts of the line by name or serial number, or else by nominal depth,
+    in order down the line. The rest of the file is unchanged.
     """
     mooring = load(path)
     refuse_all_but_moorings(mooring.file)
@@ -110,12 +94,12 @@ def assign_instruments(path: Path, list_of_instruments: Path) -> AssignedInstrum
                 f"{one.where}: {name} is {abs(one.nominal - still):.0f} m from its nominal depth"
             )
     if timeless:
-        when = "" if date is None else f", which must be after the deployment ({date})"
+        when = "" if date is None else f"; this time must be after the deployment ({date})"
         doubts.append(
-            f"{list_of_instruments.name}: clock offsets of {len(timeless)} of {len(listed)} "
-            "instruments are only reported and do not correct the times; to correct them, add a "
-            "column `clock checked` with "
-            f"the time of the comparison{when}"
+            f"{list_of_instruments.name}: for {len(timeless)} of {len(listed)} instruments the "
+            "clock offset is reported, but the times are not corrected for it. To correct them, "
+            "add a column `clock checked` with the time at which the clock was compared with true "
+            f"time{when}"
         )
     kept = [row for row in rows.values() if len(row) > 1]
     try:

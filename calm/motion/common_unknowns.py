@@ -1,7 +1,7 @@
 """Unknowns common to a whole record: factors on the line, the datum, and sensor offsets.
 
 The linear model in this module also serves to weigh sensor faults (slips, drifts and common steps)
-by the evidence of many times.
+from the readings at many times.
 """
 
 from __future__ import annotations
@@ -16,35 +16,24 @@ from numpy.typing import NDArray
 from calm.motion.currents_law import SpeedLaw
 from calm.physics.line import Floats, Integers
 
-FURTHEST = 1.0
-"""Limit on the logarithm of a factor."""
-REACH = 5.0
-"""Least distance from a sensor to the points between which its slope on the line is taken [m]."""
+FURTHEST = 1.0  # limit on the logarithm of a factor
+REACH = 5.0  # least distance from a sensor to the points that give its slope on the line [m]
 
 
 @dataclass(frozen=True)
 class Common:
-    """Estimate of the unknowns common to a whole record.
+    """Estimate of the q unknowns common to a whole record.
 
-    The q unknowns are, in this order, the logarithms of the factors, the datum [m] and the offsets
-    of the sensors [m].
-
-    Attributes
-    ----------
-    factors : names of the estimated factors and their values
-    datum : correction added to the depths of the line [m]
-    offset : (s,) offset of each sensor [m]
-    covariance : (q, q) covariance of the unknowns
-    worst : error of the computed line that remains after all corrections, as a share of the
-        knockdown
-    law : prior distribution of the inferred current speeds; None if currents were measured
+    These are, in this order, the logarithms of the factors, the datum [m] and the offsets [m].
     """
 
-    factors: Mapping[str, float]
-    datum: float
-    offset: Floats
-    covariance: Floats
+    factors: Mapping[str, float]  # names of the estimated factors and their values
+    datum: float  # correction added to the depths of the line [m]
+    offset: Floats  # (s,) offset of each sensor [m]
+    covariance: Floats  # (q, q) covariance of the unknowns
+    # error of the line that remains after all corrections, as a share of the knockdown
     worst: float = 0.07
+    # prior distribution of the inferred current speeds; None if currents were measured
     law: SpeedLaw | None = None
 
     @property
@@ -54,7 +43,7 @@ class Common:
 
     @property
     def value(self) -> Floats:
-        """Values (q,) of the unknowns, in the same order as in the covariance."""
+        """Values (q,) of the unknowns."""
         logs = np.log(list(self.factors.values()))
         return np.concatenate([logs, [self.datum], self.offset])
 
@@ -73,14 +62,9 @@ class Common:
 def common_beforehand(
     factors: Mapping[str, float], datum: float, sensors: int, mean: float = 0.0
 ) -> Common:
-    """Return the prior of the common unknowns, with all sensor offsets zero.
+    """Return the prior of the common unknowns, with all offsets zero.
 
-    Parameters
-    ----------
-    factors : initial values of the factors, by name
-    datum : prior standard deviation of the correction to the depths of the line [m]
-    sensors : number of sensors
-    mean : prior mean of the correction to the depths of the line [m]
+    The datum has a prior mean and a standard deviation `datum` [m].
     """
     known = [FACTORS[name] for name in factors]
     spread = [*known, datum, *[OFFSET] * sensors]
@@ -88,12 +72,7 @@ def common_beforehand(
 
 
 def fixed_slopes(common: Floats) -> Floats:
-    """Append derivatives with respect to the datum and the offsets to those of the factors.
-
-    Parameters
-    ----------
-    common : (n, s, f) derivatives of the readings with respect to the logarithms of the factors
-    """
+    """Append derivatives by the datum and the offsets to derivatives (n, s, f) by the factors."""
     n, s, _ = common.shape
     offsets = np.broadcast_to(np.eye(s), (n, s, s))
     return np.concatenate([common, np.ones((n, s, 1)), offsets], axis=2)
@@ -102,11 +81,7 @@ def fixed_slopes(common: Floats) -> Floats:
 def fall(depth: Floats, still: Floats, point: Integers) -> Floats:
     """Return the increase (n, s) in the depth of each sensor per metre of slip down the line.
 
-    Parameters
-    ----------
-    depth : (n, p) depths of the points at these times [m]
-    still : (p,) depths of the points in still water [m]
-    point : (s,) index of the point of each sensor
+    The points have depths (n, p), in still water (p,) [m]; the sensors are at the points (s,).
     """
     result = np.zeros((len(depth), len(point)))
     for j, one in enumerate(point.tolist()):
@@ -120,15 +95,11 @@ def fall(depth: Floats, still: Floats, point: Integers) -> Floats:
     return np.nan_to_num(result, nan=1.0)
 
 
-LONGEST_MEMORY = 25
-"""Maximum number of times over which the error correlation is summed."""
+LONGEST_MEMORY = 25  # maximum number of times over which the error correlation is summed
 
 
 def repeated(pull: Floats) -> float:
-    """Return the number of successive times that share an error.
-
-    The number follows from the autocorrelation of `pull`.
-    """
+    """Return the number of successive times that share an error, by autocorrelation of `pull`."""
     one = pull - pull.mean()
     whole = float(one @ one)
     total, chance = 1.0, 2.0 / np.sqrt(max(len(one), 1))
@@ -140,38 +111,24 @@ def repeated(pull: Floats) -> float:
     return total
 
 
-FEWEST = 4
-"""Least number of readings of a sensor before and after a slip of its clamp."""
+FEWEST = 4  # least number of readings of a sensor before and after a slip of its clamp
 
 
-ROBUST = 4.0
-"""Degrees of freedom of Student's t distribution for the misfit at one time."""
+ROBUST = 4.0  # degrees of freedom of Student's t distribution for the misfit at one time
 
 
 @dataclass(frozen=True)
 class LinearLaw:
-    """Linear model of the readings at n times, for the unknowns of the whole record.
+    """Linear model of the readings at n times, for the unknowns of the whole record."""
 
-    Attributes
-    ----------
-    time, share : (n,) times, and the share of the record that has elapsed (0 to 1)
-    known : (n, s) whether a reading exists
-    raw : (n, s) measured minus computed depths [m], with all unknowns zero
-    left : (n, s) measured minus computed depths [m], with the unknowns at the state of
-        linearisation
-    expected : (n, s, s) expected covariance of `left` [m²]
-    fixed : (n, s, q) derivatives of the readings with respect to the logarithms of the factors, the
-        datum and the offsets
-    fall : (n, s) increase in the depth of each sensor per metre that it slips down the line
-    """
-
-    time: NDArray[np.datetime64]
-    share: Floats
-    known: NDArray[np.bool_]
-    raw: Floats
-    left: Floats
-    expected: Floats
-    fixed: Floats
+    time: NDArray[np.datetime64]  # (n,) times
+    share: Floats  # (n,) share of the record that has elapsed, 0 to 1
+    known: NDArray[np.bool_]  # (n, s) whether a reading exists
+    raw: Floats  # (n, s) measured minus computed depths [m], with all unknowns zero
+    left: Floats  # (n, s) as `raw`, but with the unknowns at the state of linearisation
+    expected: Floats  # (n, s, s) expected covariance of `left` [m²]
+    fixed: Floats  # (n, s, q) derivatives of the readings with respect to the unknowns of `Common`
+    # (n, s) increase in the depth of each sensor per metre that it slips down the line
     fall: Floats
 
     @cached_property
@@ -181,50 +138,29 @@ class LinearLaw:
 
     @cached_property
     def weight(self) -> Floats:
-        """Weight (n,) of each time under Student's t distribution.
-
-        A large misfit lowers the weight.
-        """
+        """Weight (n,) of each time under Student's t distribution; a large misfit lowers it."""
         misfit = np.einsum("ns,nst,nt->n", self.left, self.inverse, self.left)
-        weight: Floats = (ROBUST + self.known.sum(axis=1)) / (ROBUST + misfit)
-        return weight
+        return np.asarray((ROBUST + self.known.sum(axis=1)) / (ROBUST + misfit))
 
     def pulls(self, seen: Floats, left: Floats) -> Floats:
-        """Return (n, q) gradients of the log-likelihood, one row for each time.
-
-        Parameters
-        ----------
-        seen : (n, s, q) derivatives of the readings with respect to the unknowns
-        left : (n, s) residuals [m]
-        """
+        """Return (n, q) gradients of the log-likelihood, for residuals (n, s), slopes (n, s, q)."""
         return np.asarray(np.einsum("n,nsq,nst,nt->nq", self.weight, seen, self.inverse, left))
 
     def normal(self, seen: Floats) -> Floats:
-        """Return the (q, q) information matrix for the readings at all times.
-
-        Parameters
-        ----------
-        seen : (n, s, q) derivatives of the readings with respect to the unknowns
-        """
+        """Return the (q, q) information matrix of all readings, for derivatives (n, s, q)."""
         heavy = self.weight[:, None, None] * self.inverse
         return np.asarray(np.einsum("nsq,nsr->qr", seen, heavy @ seen))
 
 
-MISHUNG = -1
-"""Code of a sensor that hangs elsewhere throughout, in place of a time."""
-RAMPS: Mapping[int, float] = {-2: 1.0, -3: 0.3}
-"""Share of the record over which a drift lasts, by the code that `moved_by` takes."""
+MISHUNG = -1  # code of a sensor that hangs elsewhere throughout, in place of a time
+RAMPS: Mapping[int, float] = {-2: 1.0, -3: 0.3}  # share of the record of a drift, by its code
 
 
 def moved_by(code: int, fall: Floats, share: Floats) -> Floats:
     """Return the change (n,) in the reading of a sensor per metre of offset, slip or drift.
 
-    Parameters
-    ----------
-    code : kind of error: 0 for an offset, the index of the time of a slip, `MISHUNG` for a wrong
-        place on the line throughout, or a key of `RAMPS` for a drift
-    fall : (n,) increase in the depth of the sensor per metre that it slips down the line
-    share : (n,) share of the record that has elapsed, 0 to 1
+    The code is 0 for an offset, the index of the time of a slip, `MISHUNG` for a wrong place on the
+    line, or a key of `RAMPS` for a drift; `fall` and `share` are as in `LinearLaw`.
     """
     if code in RAMPS:
         return np.minimum(share / RAMPS[code], 1.0)
@@ -232,13 +168,7 @@ def moved_by(code: int, fall: Floats, share: Floats) -> Floats:
 
 
 def chance_of(code: int, times: int) -> tuple[float, float]:
-    """Return the log prior probability of a fault, and the prior deviation of its size [m].
-
-    Parameters
-    ----------
-    code : code of the fault, as in `moved_by`
-    times : number of times at which a clamp may slip
-    """
+    """Return the log prior probability of a fault of `moved_by`, and the deviation of its size."""
     if code in RAMPS:
         return float(np.log(DRIFTS / len(RAMPS))), DRIFT
     return float(np.log(SLIPPED / times if code > 0 else MISPLACED / 2.0)), ELSEWHERE
@@ -247,15 +177,9 @@ def chance_of(code: int, times: int) -> tuple[float, float]:
 def step_times(law: LinearLaw, covariance: Floats, columns: Sequence[Floats]) -> list[int]:
     """Find the most likely start of each of several candidate changes in the readings.
 
-    Each change lasts to the end of the record and is fitted jointly with the common unknowns.
-    Return the index of the time at which each change starts. An index of 0 means that the change
-    applies to the whole record, or that no time has enough readings before and after it.
-
-    Parameters
-    ----------
-    law : linear model of the readings
-    covariance : (q, q) prior covariance of the unknowns, whose prior mean is zero
-    columns : for each change, the effect (n, s) on the readings if the change has a size of 1 m
+    Each change lasts to the end of the record, has the effect `columns` (n, s) on the readings for
+    a size of 1 m, and is fitted jointly with the common unknowns of prior covariance (q, q). Return
+    the index of the time at which each starts; 0 means the whole record, or too few readings.
     """
     inverse = np.linalg.inv(law.normal(law.fixed) + np.linalg.inv(covariance))
     left = law.raw - law.fixed @ (inverse @ law.pulls(law.fixed, law.raw).sum(axis=0))
@@ -277,8 +201,7 @@ def step_times(law: LinearLaw, covariance: Floats, columns: Sequence[Floats]) ->
     return found
 
 
-NORMAL = 1.4826
-"""Ratio of the standard deviation of a normal variable to its median absolute value."""
+NORMAL = 1.4826  # ratio of the standard deviation of a normal variable to its median absolute value
 FACTORS: Mapping[str, float] = {
     "cable_drag": 0.15, "rigid_drag": 0.15, "buoyancy": 0.02, "length": 0.003
 }  # fmt: skip
@@ -287,22 +210,14 @@ FACTORS: Mapping[str, float] = {
 The factors multiply the drag of cables and chains; the drag of rigid pieces and clamped
 instruments; the net buoyancy of all buoyant pieces; and the lengths of cables and chains.
 """
-DATUM = 0.01
-"""Prior deviation of the datum, an error common to all depths, as a share of the water depth."""
-OFFSET = 1.0
-"""Prior deviation of the offset of a sensor [m]."""
-ELSEWHERE, MISPLACED, SLIPPED = 20.0, 0.01, 0.01
-"""Prior deviation of the displacement of a slipped or misplaced sensor [m], the probability that it
-is misplaced from the start, and the probability that its clamp slips during the record.
-"""
-MOVED = 0.01
-"""Probability that the whole mooring is moved to another depth during the record."""
+DATUM = 0.01  # prior deviation of the error common to all depths, as a share of the water depth
+OFFSET = 1.0  # prior deviation of the offset of a sensor [m]
+ELSEWHERE = 20.0  # prior deviation of the displacement of a slipped or misplaced sensor [m]
+MISPLACED, SLIPPED = 0.01, 0.01  # probabilities: misplaced from the start, slips during the record
+MOVED = 0.01  # probability that the whole mooring is moved to another depth during the record
+# probability that a current is false in direction or size, by its quality flag
 FALSE: Mapping[int, float] = {0: 0.01, 1: 0.01, 2: 0.03, 3: 0.10, 4: 0.30, 8: 0.10}
-"""Probability that a current is false in direction or size, by its quality flag."""
-DRIFT, DRIFTS = 5.0, 0.01
-"""Prior deviation of the drift over the record [m], and the probability of a drift."""
-TIDE = 1.0
-"""Deviation of tide and air pressure [m], unless the sea level is given: `RESIDUAL_TIDE`."""
+DRIFT, DRIFTS = 5.0, 0.01  # prior deviation of a drift over the record [m], and its probability
+TIDE = 1.0  # deviation of tide and air pressure [m], unless the sea level is given: `RESIDUAL_TIDE`
 RESIDUAL_TIDE = 0.15
-NOISE = 0.2
-"""Deviation of a depth from pressure at one time [m]."""
+NOISE = 0.2  # deviation of a depth from pressure at one time [m]

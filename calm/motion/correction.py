@@ -28,13 +28,7 @@ from calm.dataset.discovery import (
 from calm.dataset.netcdf import Attributes, ResultLayout, down_the_line, labels, numbers, packed
 from calm.files.pieces import clamps_down
 from calm.motion.common_unknowns import Common
-from calm.motion.line_response import (
-    Forward,
-    LineResponse,
-    forwards_of,
-    labels_of,
-    points,
-)
+from calm.motion.line_response import Forward, LineResponse, forwards_of, labels_of, points
 from calm.motion.matching import serials_of
 from calm.motion.measured_currents import CurrentSmoother
 from calm.motion.measurements import MooringMeasurements, level_names
@@ -45,32 +39,24 @@ from calm.records.card import ReadCard
 from calm.records.record import Levels, Record
 
 _DEVIATION: Attributes = {"standard_name": "depth standard_error"}
+_DEPTH: Attributes = {"standard_name": "depth", "positive": "down"}
+# dimensions besides time, unit, meaning and attributes of variables added to a batch result
 OF_MOTION: Mapping[str, tuple[tuple[str, ...], tuple[str, str, Attributes]]] = {
     "clamp_depth_sd": (
-        ("clamp",),
-        ("m", "standard deviation of the depth of the clamped instrument", _DEVIATION),
+        ("clamp",), ("m", "standard deviation of the depth of the clamped instrument", _DEVIATION),
     ),
     "depth_sd": (
-        ("component",),
-        ("m", "standard deviation of the depth of the upper end", _DEVIATION),
+        ("component",), ("m", "standard deviation of the depth of the upper end", _DEVIATION),
     ),
     "current_factor": ((), ("1", "estimated factor on the current", {})),
     "current_doubt": (("level",), ("1", "probability that the current at the level is false", {})),
     "residual": (("sensor",), ("m", "measured depth of the sensor minus its estimated depth", {})),
-    "plain_depth": (
-        ("sensor",),
-        (
-            "m",
-            "depth of the sensor computed from the currents alone, without fitting",
-            {"standard_name": "depth", "positive": "down"},
-        ),
-    ),
-}
-"""Dimensions besides time, unit, meaning and attributes of variables added to a batch result."""
-OF_CURRENTS = frozenset({"current_factor", "current_doubt", "plain_depth"})
-"""Variables of `OF_MOTION` that need a measured current."""
-MEASURED, ESTIMATED, MISSING = 1, 8, 9
-"""Flags of depths, from the flag table of OceanSITES."""
+    "plain_depth": (("sensor",), (
+        "m", "depth of the sensor computed from the currents alone, without fitting", _DEPTH,
+    )),
+}  # fmt: skip
+OF_CURRENTS = frozenset({"current_factor", "current_doubt", "plain_depth"})  # need a current
+MEASURED, ESTIMATED, MISSING = 1, 8, 9  # flags of depths, from the flag table of OceanSITES
 FLAGGED = {"clamp_depth": ["clamp_depth_sd"], "depth_top": ["depth_sd"]}
 _OF_DOCUMENT = {
     "institution": "institution", "author": "creator_name", "email": "creator_email",
@@ -85,9 +71,9 @@ _OF_DOCUMENT = {
 def solve_times(
     task: Task, layout: ResultLayout, extent: list[np.float32], start: int
 ) -> SolvedBlock:
-    """Estimate the depths in the block of times that begins at `start`, ready to be written.
+    """Estimate the depths in the block of times that begins at `start`, and pack them for writing.
 
-    The smallest and the largest of these depths [m] are appended to `extent`.
+    The smallest and the largest depth [m] are appended to `extent`.
     """
     stop = start + BLOCK
     profiles, more = task.columns(start, stop)
@@ -103,8 +89,7 @@ def solve_times(
 def motion_layout(task: Task, record: MeasuredRecord) -> ResultLayout:
     """Return the layout of the result file: a batch result plus the estimates of motion.
 
-    The layout includes depth flags, serial numbers and archive attributes. The date of the file is
-    set only if SOURCE_DATE_EPOCH is set, so that equal inputs give equal bytes.
+    The date is set only if SOURCE_DATE_EPOCH is set, so that equal inputs give equal bytes.
     """
     layout, mooring, measured = layout_of(task.mooring, record), task.mooring, task.measured
     alone = task.common.inferred
@@ -158,10 +143,10 @@ def motion_layout(task: Task, record: MeasuredRecord) -> ResultLayout:
 def about(mooring: Design) -> Attributes:
     """Return archive attributes from the keys `document` and `deployed` of a mooring file."""
     file = mooring.file
-    attributes: Attributes = {}
-    if file.document is not None:
-        known = file.document.to_dict()
-        attributes = {name: str(known[key]) for key, name in _OF_DOCUMENT.items() if key in known}
+    known = {} if file.document is None else file.document.to_dict()
+    attributes: Attributes = {
+        name: str(known[key]) for key, name in _OF_DOCUMENT.items() if key in known
+    }
     for part in ("name", "email", "url"):  # the creator also publishes the file
         if f"creator_{part}" in attributes:
             attributes[f"publisher_{part}"] = attributes[f"creator_{part}"]
@@ -174,12 +159,8 @@ def about(mooring: Design) -> Attributes:
 
 
 def depth_flags(one: MooringMeasurements, profiles: Profiles) -> dict[str, NDArray[np.int8]]:
-    """Return a flag for each depth: measured, estimated or missing.
-
-    A depth is flagged as measured if the point has a sensor with a valid pressure at that time.
-    """
-    clamps = profiles.clamp_depth.shape[1]
-    depth = np.hstack([profiles.clamp_depth, profiles.depth_top])
+    """Return a flag for each depth: measured by a pressure of the point, estimated, or missing."""
+    clamps, depth = profiles.clamp_depth.shape[1], points(profiles)
     flag = np.where(np.isfinite(depth), ESTIMATED, MISSING).astype(np.int8)
     for j, point in enumerate(one.point.tolist()):
         own = np.isfinite(one.depth[:, j]) & (flag[:, point] == ESTIMATED)
@@ -188,40 +169,30 @@ def depth_flags(one: MooringMeasurements, profiles: Profiles) -> dict[str, NDArr
 
 
 def estimate_in_memory(
-    task: Task, points: Sequence[int], workers: int | None = None
+    task: Task, wanted: Sequence[int], workers: int | None = None
 ) -> tuple[Floats, Floats]:
-    """Estimate (n, m) depths of m points, and standard deviations [m], without writing a file.
-
-    Parameters
-    ----------
-    task : input of the estimate
-    points : indices of the m points
-    workers : number of threads
-    """
+    """Estimate (n, m) depths of m points, and standard deviations [m], without writing a file."""
     starts = range(0, len(task.measured.time), BLOCK)
 
     def one(start: int) -> tuple[Floats, Floats]:
         profiles, more = task.columns(start, start + BLOCK)
-        depth = np.hstack([profiles.clamp_depth, profiles.depth_top])
         spread = np.hstack([more["clamp_depth_sd"], more["depth_sd"]])
-        return depth[:, points], spread[:, points]
+        return points(profiles)[:, wanted], spread[:, wanted]
 
     with ThreadPoolExecutor(workers or processors()) as pool:
         found = list(pool.map(one, starts))
     return np.concatenate([each[0] for each in found]), np.concatenate([each[1] for each in found])
 
 
-BLOCK = 512
-"""Number of times that are estimated and written together."""
+BLOCK = 512  # number of times that are estimated and written together
 
 
 @dataclass(frozen=True)
 class Task:
-    """Input of the estimate of depths.
+    """Input of the estimate of depths, from the sensors in use.
 
-    `measured` contains only the sensors in use. `smoother` is the solution for the whole record, or
-    None if no currents were measured. `faults` are the diagnosed faults, or None if the diagnosis
-    has not been made.
+    `smoother` is the solution for the whole record, or None if no currents were measured. `faults`
+    are the diagnosed faults, or None before the diagnosis.
     """
 
     mooring: Design
@@ -233,10 +204,7 @@ class Task:
     def columns(self, start: int, stop: int) -> tuple[Profiles, dict[str, NDArray[np.float64]]]:
         """Estimate the line at the times from `start` to `stop`, in the most likely currents.
 
-        Returns
-        -------
-        The profiles with the estimated depths, and a dictionary with `clamp_depth_sd`, `depth_sd`,
-        `residual` and, for measured currents, `current_factor`, `current_doubt` and `plain_depth`.
+        Return the profiles, and further columns, by the names of `OF_MOTION`.
         """
         times, smoother = slice(start, stop), self.smoother
         one = self.measured.at(times)
@@ -251,8 +219,7 @@ class Task:
         else:
             forward, offset = smoother.best, smoother.offset[times]
             depth, deviation = smoother.depth[times], smoother.deviation[times]
-            read = smoother.read(times)
-            surface = smoother.surface[times]
+            read, surface = smoother.read(times), smoother.surface[times]
         # inferred currents may exceed the limit of measured ones, which is for errors in files
         limit = self.mooring.file.environment.maximum_speed
         share = np.minimum(1.0, (1.0 - 1e-9) * limit / np.maximum(np.hypot(read.u, read.v), 1e-9))
@@ -270,12 +237,11 @@ class Task:
         if smoother is not None:
             profiles = without_current(profiles, smoother.lost[times], one.false)
         known = np.where(profiles.status == 0, 1.0, np.nan)
-        deviation = deviation * known[:, None]
+        clamp_deviation, own_deviation = np.split(deviation * known[:, None], [clamps], axis=1)
         columns = {
-            "clamp_depth_sd": deviation[:, :clamps],
-            "depth_sd": deviation[:, clamps:],
+            "clamp_depth_sd": clamp_deviation, "depth_sd": own_deviation,
             "residual": one.depth - offset - depth[:, one.point],
-        }
+        }  # fmt: skip
         if smoother is not None:
             columns |= {
                 "current_factor": smoother.current_factor[times] * known,
@@ -292,10 +258,9 @@ class Task:
 def without_current(
     profiles: Profiles, lost: NDArray[np.bool_], false: NDArray[np.bool_] | None
 ) -> Profiles:
-    """Replace the results with NaN at times that are too far from any measured current.
+    """Replace the results with NaN at the times `lost` (n,), too far from any measured current.
 
-    `lost` (n,) marks these times. Their status becomes "implausible-current" where `false` is true,
-    and "no-current" elsewhere.
+    Their status becomes "implausible-current" where `false` is true, and "no-current" elsewhere.
     """
     status = np.where(lost, STATUSES.index("no-current"), profiles.status)
     if false is not None:

@@ -11,13 +11,7 @@ from calm.physics.line import Floats
 
 @dataclass(frozen=True)
 class ReadCurrents:
-    """Currents at n times and k levels, as used to solve the line.
-
-    Attributes
-    ----------
-    level : (n, k) depths of the levels [m]
-    u, v : (n, k) eastward and northward components [m/s]
-    """
+    """Currents u, v to east and north [m/s] at levels [m], each (n, k), to solve the line."""
 
     level: Floats
     u: Floats
@@ -26,27 +20,15 @@ class ReadCurrents:
 
 @dataclass(frozen=True)
 class Linear:
-    """Depths of the points, linearised about a state of the currents.
+    """Depths of the points, linearised about a state of the currents."""
 
-    Attributes
-    ----------
-    logs : (n, g) logarithms of the factors on the currents, which are the state
-    depth : (n, p) depths at the state [m]
-    slope : (n, p, g) derivatives of the depths with respect to the state
-    common : (n, p, f) derivatives of the depths with respect to the logarithms of the common
-        factors
-    """
-
-    logs: Floats
-    depth: Floats
-    slope: Floats
-    common: Floats
+    logs: Floats  # (n, g) logarithms of the factors on the currents, which are the state
+    depth: Floats  # (n, p) depths at the state [m]
+    slope: Floats  # (n, p, g) derivatives of the depths with respect to the state
+    common: Floats  # (n, p, f) derivatives by the logarithms of the common factors
 
     def moved(self, logs: Floats, depth: Floats) -> Linear:
-        """Return the model at another state whose depths are known.
-
-        The slopes are updated by Broyden's method.
-        """
+        """Return the model at a state of known depths, with slopes updated by Broyden's method."""
         step = logs - self.logs
         size = (step**2).sum(axis=1)[:, None]
         miss = depth - self.depth - np.einsum("npg,ng->np", self.slope, step)
@@ -57,18 +39,12 @@ class Linear:
 
 @dataclass(frozen=True)
 class SpeedLaw:
-    """Log-normal prior distribution of the current speeds at k knots.
+    """Log-normal prior distribution of the current speeds at k knots."""
 
-    Attributes
-    ----------
-    mean : (k,) mean of the logarithms of the speeds [m/s]
-    covariance : (k, k) covariance of these logarithms
-    kept : stored models of the line: first at the mean speeds, then at the times from which the
-        distribution was learnt; their states are relative to `mean`
-    """
-
-    mean: Floats
-    covariance: Floats
+    mean: Floats  # (k,) mean of the logarithms of the speeds [m/s]
+    covariance: Floats  # (k, k) covariance of these logarithms
+    # stored models of the line: first at the mean speeds, then at the times from which the
+    # distribution was learnt; their states are relative to `mean`
     kept: Linear | None = None
 
     def read(self, level: Floats) -> ReadCurrents:

@@ -1,15 +1,14 @@
-"""Diagnosis of sensors: clocks, gains, offsets, drifts, slipped clamps, exchanged labels.
+"""Diagnosis of sensors: clocks, gains, offsets, drifts, slipped clamps.
 
-Each fault is an additional unknown, with its own prior, in the fit of the whole record. It is
-weighed by a Bayes factor (Kass and Raftery 1995) from the likelihood of the pressures. The misfit
-of each time follows Student's t distribution, and an error that lasts for several times counts
-once. The most likely fault is accepted, and the others are weighed again together with it, until no
-further fault is likely.
+Each fault is an additional unknown, with its own prior, in the fit of the whole record. The fault
+is weighed by a Bayes factor (Kass and Raftery 1995) from the likelihood of the pressures. The
+misfit at each time follows Student's t distribution, and an error that lasts for several times
+counts once. The most likely fault is accepted, and the other faults are weighed again together with
+this fault, until no further fault is likely.
 """
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,53 +31,36 @@ from calm.motion.suspects import Suspect, line_suspects
 from calm.motion.unknown_currents import SEABED, unknown_state
 from calm.physics.line import Floats
 
+# odds above which a fault is reported without measured currents: the line may be the cause instead
 LIKELY_ALONE = 1000.0
-"""Odds above which a fault is reported if currents were not measured.
-
-They are higher because an error of the line may be the cause instead.
-"""
-MOST = 8
-"""Maximum number of faults."""
-CLOCKS, FURTHEST = 0.01, 13.0
-"""Probability of a wrong clock, and the maximum lag searched [h]."""
-GAIN, GAINS, ALL_GAINS = 0.02, 0.01, 0.001
-"""Prior deviation of a gain, and the probability of a wrong gain in one sensor and in all."""
-EXCHANGED = 0.01
-"""Probability that two labels are exchanged."""
+MOST = 8  # maximum number of faults
+CLOCKS, FURTHEST = 0.01, 13.0  # probability of a wrong clock, and the maximum lag searched [h]
+GAIN = 0.02  # prior deviation of a gain
+GAINS, ALL_GAINS = 0.01, 0.001  # probability of a wrong gain in one sensor, and in all
 LEAST = {
     "moved": 3.0, "clock": 0.08, "gain": 0.003, "offset": 2.5, "drift": 1.0, "slip": 1.5,
-    "exchanged": 0.0, "currents": 0.1, "buoyancy": 0.06, "length": 0.004, "drag": 0.3,
+    "currents": 0.1, "buoyancy": 0.06, "length": 0.004, "drag": 0.3,
     "fouling": 0.2,
 }  # fmt: skip
 """Smallest faults that are reported.
 
-Units: m for `moved`, `offset`, `drift` and `slip`; for `clock` hours, and also time steps of the
-record; 1 for `gain`; otherwise the logarithm of a factor.
+Units: m for `moved`, `offset`, `drift` and `slip`; for `clock`, hours or time steps of the record,
+whichever are longer; 1 for `gain`; logarithm of a factor for the other kinds.
 """
-RIVALS = 3
-"""Maximum number of rival explanations reported."""
-FINEST = 0.02
-"""Uncertainty added to the lag of a clock, as a share of the time step of the record."""
-FEWEST = 20
-"""Least number of times for a diagnosis."""
+RIVALS = 3  # maximum number of rival explanations reported
+FINEST = 0.02  # uncertainty added to the lag of a clock, as a share of the time step of the record
+FEWEST = 20  # least number of times for a diagnosis
 
 
 @dataclass(frozen=True)
 class _Found:
-    """Likelihood of the pressures with a set of faults.
+    """Likelihood of the pressures with a set of faults."""
 
-    Attributes
-    ----------
-    log : logarithm of the likelihood
-    value, deviation : size of the last fault, and its standard deviation
-    left : (n, s) residuals [m]
-    pulls : (n,) derivative of the log-likelihood of each time by the size of the last fault
-    """
-
-    log: float
-    value: float
-    deviation: float
-    left: Floats
+    log: float  # logarithm of the likelihood
+    value: float  # size of the last fault
+    deviation: float  # standard deviation of this size
+    left: Floats  # (n, s) residuals [m]
+    # (n,) derivative of the log-likelihood of each time by the size of the last fault
     pulls: Floats
 
 
@@ -86,11 +68,7 @@ Weighed = list[tuple[Suspect, float]]
 
 
 def diagnosed(task: Task) -> tuple[Fault, ...]:
-    """Return the likely faults of the sensors, the currents and the line, most likely first.
-
-    If the task already holds diagnosed faults, they are returned unchanged. A record with too few
-    times gives no faults.
-    """
+    """Return the likely faults of sensors, currents and line, unless the task has them already."""
     if task.faults is not None:
         return task.faults
     law, causes = law_near(task)
@@ -100,10 +78,9 @@ def diagnosed(task: Task) -> tuple[Fault, ...]:
 
 
 def law_near(task: Task) -> tuple[LinearLaw | None, list[Suspect]]:
-    """Return the linear model of the readings, and possible faults of the line and its currents.
+    """Return the linear model of the readings, and possible faults of line and currents.
 
-    The model is linearised at the solution of the task. The model is None if no time has
-    measurements. The list of faults is empty if the currents were inferred.
+    There is no model without measurements, and there are no such faults of inferred currents.
     """
     times = chosen_times(task.measured, task.smoother is None)
     if not len(times):
@@ -119,20 +96,14 @@ def law_near(task: Task) -> tuple[LinearLaw | None, list[Suspect]]:
     known = np.isfinite(part.depth[good])
     left = np.where(known, here.found.innovation[good], 0.0)
     fixed = fixed_slopes(here.at.common[good][:, part.point])
-    return LinearLaw(
-        time,
-        task.measured.elapsed(time),
-        known,
-        np.where(known, left + fixed @ common.value, 0.0),
-        left,
-        here.found.expected[good],
-        fixed,
-        common_unknowns.fall(depth, moments.forward.still, part.point),
-    ), []
+    raw = np.where(known, left + fixed @ common.value, 0.0)
+    fall = common_unknowns.fall(depth, moments.forward.still, part.point)
+    expected, share = here.found.expected[good], task.measured.elapsed(time)
+    return LinearLaw(time, share, known, raw, left, expected, fixed, fall), []
 
 
 class Diagnosis:
-    """Search for faults in a record, by the likelihood of the pressures with each fault."""
+    """Search for faults in a record; the likelihood of the pressures decides between faults."""
 
     def __init__(self, task: Task, law: LinearLaw, causes: Sequence[Suspect] = ()) -> None:
         self.causes = causes
@@ -161,9 +132,8 @@ class Diagnosis:
     def _at(self, late: float) -> Floats:
         """Return (n, s) depths read by the sensors `late` hours after each time [m].
 
-        Between the times of the record, the interpolation takes the slope and a quarter of the
-        curvature. It neither amplifies nor smooths noise; either would by itself favour a clock
-        error.
+        Interpolation takes the slope and a quarter of the curvature. It neither amplifies nor
+        smooths noise; either would by itself favour a clock error.
         """
         whole = round(late / self.step) if self.step > 0.0 else 0
         part = late / self.step - whole if self.step > 0.0 else 0.0
@@ -184,8 +154,6 @@ class Diagnosis:
             if np.logaddexp.reduce(kin) < np.log(self.likely):
                 break
             taken.append(best[0])
-            if best[0].fault.kind == "exchanged":  # no other diagnosis is valid before the exchange
-                break
         found = []
         for i, one in enumerate(taken):
             rest = [*taken[:i], *taken[i + 1 :]]
@@ -195,42 +163,32 @@ class Diagnosis:
             if not mine:
                 continue
             (suspect, log), *_ = mine
-            odds = np.exp(
-                min(log - np.logaddexp.reduce([0.0, *(each[1] for each in others)]), 50.0)
-            )
+            rest_of = float(np.logaddexp.reduce([0.0, *(each[1] for each in others)]))
+            fault = replace(suspect.fault, odds=float(np.exp(min(log - rest_of, 50.0))))
             near = [each for each in others if each[1] > log - np.log(LIKELY)][:RIVALS]
             rival = ", or ".join(
-                f"{each.fault.sentence(rival=False)} ({np.exp(min(other - log, 9.0)):.2g} times "
-                "as likely)"
+                f"{each.fault.sentence()} ({np.exp(min(other - log, 9.0)):.2g} times as likely)"
                 for each, other in near
             )
-            if odds >= LIKELY:
-                rival = ""
-            found.append(replace(suspect.fault, odds=float(odds), rival=rival))
+            found.append(fault if fault.certain else replace(fault, rival=rival))
         return tuple(found)
 
     def weighed(self, taken: list[Suspect]) -> Weighed:
         """Return every possible fault other than those in `taken`, with its log odds."""
-        begun = self.fitted(taken, None, 1.0)
         result = []
-        for suspect in self._suspects(taken, begun):
+        for suspect in self._suspects(taken, self.fitted(taken, None, 1.0)):
             alike = repeated(self.fitted(taken, suspect, 1.0).pulls)
             base = self.fitted(taken, None, alike).log
             found = self.fitted(taken, suspect, alike)
-            fault = suspect.fault
+            fault, least, deviation = suspect.fault, LEAST[suspect.fault.kind], found.deviation
             size = found.value if suspect.wide else fault.size
-            deviation = found.deviation
             log = found.log - base + suspect.log
             if fault.kind == "clock":  # uniform prior of the lag
                 log += float(np.log(np.sqrt(2.0 * np.pi) * deviation / (2.0 * FURTHEST)))
-            least = LEAST[fault.kind]
-            if fault.kind == "clock":
                 least *= max(self.step, 1.0)
                 deviation = float(np.hypot(deviation, FINEST * self.step))
-            if abs(size) < least:
-                continue
-            fault = fault.sized(size, deviation)
-            result.append((replace(suspect, fault=fault), log))
+            if abs(size) >= least:
+                result.append((replace(suspect, fault=fault.sized(size, deviation)), log))
         return result
 
     def _raw(self, taken: list[Suspect]) -> Floats:
@@ -239,17 +197,13 @@ class Diagnosis:
     def fitted(self, taken: list[Suspect], last: Suspect | None, alike: float) -> _Found:
         """Fit the sizes of the faults `taken` and `last`; compute the likelihood of the pressures.
 
-        Parameters
-        ----------
-        taken : faults that are already accepted
-        last : additional fault; None for none
-        alike : number of successive times that share an error
+        Errors are shared by `alike` successive times.
         """
         whole = taken if last is None else [*taken, last]
         free = [one for one in whole if one.wide]
-        columns = (
-            np.stack([one.column for one in free], axis=2) if free else self.law.fixed[:, :, :0]
-        )
+        columns = np.stack([self.law.fixed[:, :, 0], *(one.column for one in free)], axis=2)[
+            :, :, 1:
+        ]
         raw = self._raw(whole)
         seen = np.concatenate([self.seen, self.white @ columns], axis=2)
         left = (self.white @ raw[:, :, None])[:, :, 0]
@@ -277,10 +231,8 @@ class Diagnosis:
             size = float(value[-1]) if last.wide else 0.0
             spread = np.linalg.inv(normal)[-1, -1] if last.wide else 1.0 / max(information, 1e-12)
             deviation = float(np.sqrt(spread))
-        rest = (
-            raw - self.law.fixed @ value[: len(self.spread)] - columns @ value[len(self.spread) :]
-        )
-        return _Found(log, size, deviation, rest, pulls)
+        common, own = np.split(value, [len(self.spread)])
+        return _Found(log, size, deviation, raw - self.law.fixed @ common - columns @ own, pulls)
 
     def _suspects(self, taken: list[Suspect], begun: _Found) -> Iterator[Suspect]:
         law, none = self.law, np.zeros_like(self.law.raw)
@@ -322,7 +274,8 @@ class Diagnosis:
             chance = float(np.log(common_unknowns.MOVED / len(law.time)))
             yield Suspect(fault, step, common_unknowns.ELSEWHERE, chance)
         yield from (one for one in self.causes if (one.fault.label, one.fault.kind) not in had)
-        for label, mine in self._whose():
+        whose = [*zip(self.label, np.eye(len(self.label), dtype=bool), strict=True)]
+        for label, mine in [*whose, *[(ALL, np.ones(len(self.label), bool))] * several]:
             if (label, "gain") not in had and not self.alone:
                 chance = float(np.log(ALL_GAINS if label == ALL else GAINS))
                 yield Suspect(Fault(label, "gain"), depth * mine, GAIN, chance)
@@ -330,25 +283,6 @@ class Diagnosis:
                 late = self._late(taken, begun.left, mine)
                 if late.fault.value:
                     yield late
-        missed = self._missed(raw)
-        for i, j in combinations(range(len(self.label)), 2):
-            away = np.nan_to_num(self.depth[:, j] - self.depth[:, i])
-            shift = none.copy()
-            shift[:, i], shift[:, j] = away, -away
-            names = self.label[i], self.label[j]
-            if self._missed(raw + shift) > missed:
-                continue
-            if {(names[0], "exchanged"), (names[1], "exchanged")} & had:
-                continue
-            fault = Fault(names[0], "exchanged", other=names[1])
-            pairs = len(self.label) * (len(self.label) - 1) / 2
-            yield Suspect(fault, shift, 0.0, float(np.log(EXCHANGED / pairs)), shift)
-
-    def _whose(self) -> Iterator[tuple[str, NDArray[np.bool_]]]:
-        for j, label in enumerate(self.label):
-            yield label, np.arange(len(self.label)) == j
-        if len(self.label) > 1 and not self.alone:
-            yield ALL, np.ones(len(self.label), bool)
 
     def _shift(self, late: float, mine: NDArray[np.bool_]) -> Floats:
         added: Floats = np.where(mine, np.nan_to_num(self._at(late) - self.depth), 0.0)
@@ -361,12 +295,7 @@ class Diagnosis:
         return float(((ROBUST + count) * np.log1p(misfit / ROBUST)).sum())
 
     def _late(self, taken: list[Suspect], left: Floats, mine: NDArray[np.bool_]) -> Suspect:
-        """Find the most likely clock error shared by the sensors in the mask `mine`.
-
-        Parameters
-        ----------
-        left : (n, s) residuals [m] without any clock error
-        """
+        """Find the most likely clock error shared by the sensors in the mask `mine`."""
         reach, step = int(FURTHEST / self.step) if self.step > 0.0 else 0, self.step
 
         def miss(late: float) -> float:

@@ -44,41 +44,25 @@ from calm.whole_file import beside
 if TYPE_CHECKING:
     from xarray import Dataset
 
-SEVERAL = ("depth", "depth_sd", "depth_qc")
-"""Variables added to a file of several instruments.
-
-For a single instrument, the names are in upper case.
-"""
-ONE = tuple(name.upper() for name in SEVERAL)
+SEVERAL = ("depth", "depth_sd", "depth_qc")  # variables added to a file of several instruments
+ONE = tuple(name.upper() for name in SEVERAL)  # and of a single instrument
 _OF_OLD = ("DEPTH_quality_control", "DEPTH_UNCERTAINTY", "INSTRUMENT_DEPTH")
-NOMINAL = "NOMINAL_DEPTH"
-"""New name of the nominal depth of a single instrument, if its old name was `DEPTH`."""
+NOMINAL = "NOMINAL_DEPTH"  # new name of the nominal depth `DEPTH` of a single instrument
 _TIMES = ("time", "TIME", "Time")
-_OF_MOTION = ("title", "keywords", "references")
-"""Attributes of a result of `calm motion` that describe the result itself."""
+_OF_MOTION = ("title", "keywords", "references")  # attributes that describe a motion file itself
 
 
 @dataclass(frozen=True)
 class Instruments:
-    """A file of one or more instruments, to which estimated depths are to be added.
-
-    Attributes
-    ----------
-    path : path of the file
-    clock : name of the time variable
-    dimension : name of the time dimension
-    along : name of the dimension of the instruments; None for a single instrument
-    time : (n,) times
-    who : identities of the instruments
-    point : index of the point of the line for each instrument; None for an unmatched instrument
-    """
+    """A file of one or more instruments, to which estimated depths are to be added."""
 
     path: Path
-    clock: str
-    dimension: str
-    along: str | None
+    clock: str  # name of the time variable
+    dimension: str  # name of the time dimension
+    along: str | None  # name of the dimension of the instruments; None for a single instrument
     time: NDArray[np.datetime64]
-    who: tuple[Identity, ...]
+    who: tuple[Identity, ...]  # the instruments
+    # point of the line for each instrument; None for an unmatched instrument
     point: tuple[int | None, ...]
 
     @property
@@ -88,22 +72,9 @@ class Instruments:
 
 
 def read_instruments(given: Path, line: LinePlaces) -> tuple[list[Instruments], list[str]]:
-    """Read the instruments of a file or folder and match them to points of the line.
+    """Read the instruments of a file or folder, and match them to points of the line.
 
     Also return notes on the matches.
-
-    Parameters
-    ----------
-    given : the file, or a folder of .nc files
-    line : points of the line
-
-    Raises
-    ------
-    InputError
-        A file is not NetCDF, has groups or no times, or does not identify its instruments.
-    UsageError
-        A file already has a variable or a dimension with the name of an added variable, or no
-        instrument matches a part of the line.
     """
     seabed = float(line.still[-1])
     found = [_read(path, seabed) for _, path in files_given([str(given)])]
@@ -113,8 +84,8 @@ def read_instruments(given: Path, line: LinePlaces) -> tuple[list[Instruments], 
     except UsageError as error:
         raise UsageError(f"--onto: {given}: {error}") from None
     each = iter(range(len(everyone)))
-    return [replace(file, point=tuple(points.get(next(each)) for _ in file.who)) for file in found
-            ], notes  # fmt: skip
+    matched = [tuple(points.get(next(each)) for _ in file.who) for file in found]
+    return [replace(one, point=point) for one, point in zip(found, matched, strict=True)], notes
 
 
 def _read(path: Path, seabed: float) -> Instruments:
@@ -132,9 +103,8 @@ def _read(path: Path, seabed: float) -> Instruments:
         dimension = str(dataset[clock].dims[0])
         along, who = _who(dataset, dimension, seabed, path)
         _refuse_depths(dataset, path, dimension, along)
-        return Instruments(
-            path, clock, dimension, along, cf_files.read_times(dataset, clock), who, ()
-        )
+        times = cf_files.read_times(dataset, clock)
+        return Instruments(path, clock, dimension, along, times, who, ())
 
 
 def _who(
@@ -158,20 +128,15 @@ def _who(
 
 def _refuse_depths(dataset: Dataset, path: Path, time: str, along: str | None) -> None:
     names = ONE if along is None else SEVERAL
-    counted = [name for name in names if dataset.sizes.get(name, 1) > 1]
-    if along in names:
-        counted.append(str(along))
+    counted = [name for name in names if dataset.sizes.get(name, 1) > 1 or name == along]
     if counted:
         raise UsageError(
             f"--onto: `{counted[0]}` is a dimension of {path}; rename it, because a variable with "
             "two dimensions cannot have the name of one of them"
         )
-    there = [
-        name for name in names
-        if name in dataset.variables and (along is not None or time in dataset[name].dims)
-    ]  # fmt: skip
-    if there:
-        raise UsageError(f"--onto: {path} already has `{there[0]}`; rename that variable")
+    for name in names:
+        if name in dataset.variables and (along is not None or time in dataset[name].dims):
+            raise UsageError(f"--onto: {path} already has `{name}`; rename that variable")
 
 
 def write_depths(
@@ -183,34 +148,18 @@ def write_depths(
 ) -> list[str]:
     """Write a copy of an instrument file with depths, standard deviations and flags added.
 
-    Parameters
-    ----------
-    instruments : file to copy, and its instruments
-    result : dataset of `calm motion`
-    gap : longest gap over which depths are interpolated
-    output : path of the copy
-    inputs : names and hashes of the source files of the depths
-
-    Returns
-    -------
-    Names of the instruments that get no depths because they match no point of the line.
-
-    Raises
-    ------
-    OSError
-        The disk has no space for the copy.
+    Depths come from a dataset of `calm motion`, and are interpolated over gaps of at most `gap`;
+    the names and hashes of their source files, `inputs`, are added to the history. Return the names
+    of the instruments that get no depths because they match no point of the line.
     """
     import xarray as xr
 
     shape = len(instruments.time), len(instruments.who)
-    depth, spread = np.full(shape, np.nan), np.full(shape, np.nan)
+    depth, spread = np.full((2, *shape), np.nan)
     flag = np.full(shape, MISSING, np.int8)
-    lost = []
-    for j, point in enumerate(instruments.point):
-        if point is None:
-            lost.append(instruments.who[j].named)
-            continue
-        depth[:, j], spread[:, j], flag[:, j] = at_own_times(result, point, instruments.time, gap)
+    for j, at in enumerate(instruments.point):
+        if at is not None:
+            depth[:, j], spread[:, j], flag[:, j] = at_own_times(result, at, instruments.time, gap)
     # raw values, except texts: characters would be split again
     if engine := cf_files.engine_of(instruments.path):
         with xr.open_dataset(
@@ -252,23 +201,17 @@ def write_depths(
     _describe(copy, instruments, inputs, result)
     with beside(output) as part:
         copy.to_netcdf(part, engine="h5netcdf")
-    return lost
+    pairs = zip(instruments.who, instruments.point, strict=True)
+    return [who.named for who, point in pairs if point is None]
 
 
 def at_own_times(
     result: Dataset, point: int, time: NDArray[np.datetime64], gap: np.timedelta64
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int8]]:
-    """Interpolate depth, standard deviation and flag of a point to the times of an instrument.
+    """Interpolate depth, standard deviation and flag of a point to the times (n,) of an instrument.
 
     The flag is "measured" if the pressure of the instrument itself was used, "interpolated" for
-    other estimated depths, and "missing" if there is no depth.
-
-    Parameters
-    ----------
-    result : dataset of `calm motion`
-    point : index of the point, as defined in `calm.motion.line_response.Forward`
-    time : (n,) times of the instrument
-    gap : longest gap over which depths are interpolated
+    other estimated depths, and "missing" if there is no depth, as in gaps longer than `gap`.
     """
     known = result["time"].values
     depth, spread = (interpolated(known, one, time, gap) for one in depths_at(result, point))
@@ -343,15 +286,14 @@ def _archived(copy: Dataset, instruments: Instruments, result: Dataset) -> None:
     import xarray as xr
 
     stations, where = station(_mooring(result), _place(copy, result), "the anchor")
-    names = where.upper().split()
     for one in stations:
         copy[one.name.upper()] = xr.Variable((), one.values, one.described)
     measured = [str(name) for name in copy.data_vars if copy[name].dims == (instruments.dimension,)]
+    coordinates = " ".join(where.upper().split())
     for name in measured:
         copy[name].attrs |= {
-            "coordinates": " ".join(names),
-            "coverage_content_type": "physicalMeasurement",
-        }
+            "coordinates": coordinates, "coverage_content_type": "physicalMeasurement"
+        }  # fmt: skip
     product = "".join(c if c.isalnum() else "-" for c in instruments.path.stem)
     copy.attrs |= {
         **ARCHIVED,
@@ -385,9 +327,9 @@ def _describe(
 ) -> None:
     """Add global attributes on depths and mooring, and a line in the history.
 
-    Attributes of the original file are kept, except for the range of depths. Attributes that begin
-    with the same word, such as `creator_name` and `creator_email`, are treated as a group: if the
-    original has one of them, none of the group is added.
+    Attributes of the original file are kept, except for the range of depths. If the original has
+    one of several attributes that begin with the same word, such as `creator_name`, none of these
+    is added.
     """
     name, _, mark = instruments.names
     mooring = _mooring(result)
@@ -412,10 +354,7 @@ def _describe(
 
 
 def _place(copy: Dataset, result: Dataset) -> list[float]:
-    """Return latitude and longitude [degrees] from the file, or else from the mooring.
-
-    The result is empty if they are unknown.
-    """
+    """Return latitude and longitude [degrees] from the file or the mooring; empty if unknown."""
     found = []
     for axis in ("latitude", "longitude"):
         own = [one for one in copy.variables.values() if one.attrs.get("standard_name") == axis]

@@ -20,22 +20,13 @@ from calm.records.instrument_series import Identity, who_along
 
 @dataclass(frozen=True)
 class LinePlaces:
-    """The p points of a line to which instruments may be matched.
+    """The p points of a line to which instruments may be matched."""
 
-    Attributes
-    ----------
-    name : path of the mooring file
-    label, serial : (p,) labels and serial numbers of clamps and pieces; the serial number is empty
-        if unknown
-    clamps : number of clamps, which precede the other points
-    still : (p,) depths in still water [m]
-    """
-
-    name: str
-    label: tuple[str, ...]
-    serial: tuple[str, ...]
-    clamps: int
-    still: Floats
+    name: str  # path of the mooring file
+    label: tuple[str, ...]  # (p,) labels of clamps and pieces
+    serial: tuple[str, ...]  # (p,) serial numbers; empty if unknown
+    clamps: int  # number of clamps, which precede the other points
+    still: Floats  # (p,) depths in still water [m]
 
 
 def places_of(mooring: Design) -> LinePlaces:
@@ -69,25 +60,17 @@ def without(measured: MooringMeasurements, labels: Sequence[str]) -> MooringMeas
 
 @dataclass(frozen=True)
 class Clock:
-    """Clock error of an instrument, which grows linearly from zero.
+    """Clock error of an instrument, which grows linearly from zero."""
 
-    Attributes
-    ----------
-    since : time at which the clock was set
-    checked : time at which the clock was compared with the true time
-    late : lag of the clock at the time `checked` [s]; positive if the clock was behind
-    """
-
-    since: np.datetime64
-    checked: np.datetime64
-    late: float
+    since: np.datetime64  # time at which the clock was set
+    checked: np.datetime64  # time at which the clock was compared with the true time
+    late: float  # lag of the clock at the time `checked` [s]; positive if the clock was behind
 
     def true_times(self, time: NDArray[np.datetime64]) -> NDArray[np.datetime64]:
         """Correct the times (n,) of readings for the error of the clock."""
         share = (time - self.since) / (self.checked - self.since)
         late = np.round(self.late * 1e9 * np.maximum(share, 0.0)).astype("m8[ns]")
-        true: NDArray[np.datetime64] = time + late
-        return true
+        return np.asarray(time + late)
 
     @property
     def sentence(self) -> str:
@@ -100,14 +83,7 @@ class Clock:
 def clocks_of(mooring: Design, first: np.datetime64) -> dict[str, Clock]:
     """Return the measured clock errors of the deployed instruments, by label.
 
-    Parameters
-    ----------
-    first : start of the record; if the deployment has no date, the lag grows from this time
-
-    Raises
-    ------
-    UsageError
-        A clock was checked before the deployment or at the same time.
+    If the deployment has no date, the lag grows from the time `first`.
     """
     deployed = mooring.file.deployed
     found = {}
@@ -130,29 +106,22 @@ def hung_currents(
 ) -> tuple[CurrentMeasurements, list[str]]:
     """Match the instruments of a current file to the line by serial number or nominal depth.
 
-    The levels of matched instruments get the label of their part and move with the line. Levels
-    that already have a label, and levels without an identified instrument, such as the bins of a
-    profiler, are unchanged. Also return notes on the matches.
+    The levels of matched instruments get the label of their part and move with the line. Other
+    levels, such as the bins of a profiler, are unchanged. Also return notes on the matches.
     """
     if any(one.label) or path.is_dir() or not cf_files.holds_arrays(path):
         return one, []
     with cf_files.opened(path) as dataset:
         levels = one.u.shape[1]
-        along: list[str | None] = [
-            str(dim) for dim, size in dataset.sizes.items() if size == levels > 1
-        ]
-        who: Sequence[Identity] = ()
-        if levels == 1:
-            along.append(None)
-        for dim in along:
-            who = who_along(dataset, dim, seabed, path.name)
-            if any(each.serial or each.label for each in who):
-                break
-        else:
-            return one, []
+        sized = [str(dim) for dim, size in dataset.sizes.items() if size == levels]
+        along: Sequence[str | None] = sized if levels > 1 else [None]
+        each_way = [who_along(dataset, dim, seabed, path.name) for dim in along]
+    who = next((who for who in each_way if any(each.serial or each.label for each in who)), [])
+    if len(who) != levels:
+        return one, []
     place = np.array([each.nominal for each in who])
     own = np.nanmedian(np.where(np.isfinite(one.depth), one.depth, np.nan), axis=0)
-    if len(who) != levels or not np.nanmax(np.abs(own - place), initial=0.0) < CERTAIN:
+    if not np.nanmax(np.abs(own - place), initial=0.0) < CERTAIN:
         return one, []
     try:
         points, sentences = points_of(who, line)
@@ -161,15 +130,14 @@ def hung_currents(
     label = tuple(line.label[points[i]] if i in points else "" for i in range(levels))
     hung = np.array([bool(each) for each in label])
     moved = replace(one, label=label, depth=np.where(hung, np.nan, one.depth))
-    named = ", ".join(each for each in label if each)
+    named = ", ".join(filter(None, label))
     return moved, [
         *sentences,
         f"{one.source}: {named} move with the line, and so do their currents",
     ]
 
 
-CERTAIN = 2.0
-"""Least excess cost of the second-best order of sensors for a unique match [m]."""
+CERTAIN = 2.0  # least excess cost of the second-best order of sensors for a unique match [m]
 
 
 def matched_by_place(
@@ -177,24 +145,9 @@ def matched_by_place(
 ) -> tuple[dict[int, int], list[str]]:
     """Match sensors to instruments by nominal depth, in order down the line.
 
-    The chosen match preserves the order and has the smallest sum of differences in depth.
-
-    Parameters
-    ----------
-    given : the sensors
-    line : points of the line
-    places : indices of the points that are instruments
-
-    Returns
-    -------
-    Mapping from the index of each matched sensor in `given` to the index of its point, and notes in
-    sentences.
-
-    Raises
-    ------
-    UsageError
-        A sensor has no nominal depth, there are more sensors than instruments, or the best match is
-        not unique.
+    The chosen match preserves the order and has the smallest sum of differences in depth. Return a
+    mapping from the index of each sensor to the index of its point, and notes in sentences. The
+    indices of the points that are instruments are given as `places`.
     """
     lacking = [one.named for one in given if not np.isfinite(one.nominal)]
     if lacking:
@@ -213,25 +166,16 @@ def matched_by_place(
     ]
 
 
-CLEAR = 10.0
-"""Least excess cost of the second-best order of instruments for a unique match [m]."""
+CLEAR = 10.0  # least excess cost of the second-best order of instruments for a unique match [m]
 
 
 def points_of(series: Sequence[Identity], line: LinePlaces) -> tuple[dict[int, int], list[str]]:
     """Match series to points by label or serial number.
 
     Series that have neither a label nor a serial number are matched by nominal depth, in order down
-    the line.
-
-    Returns
-    -------
-    Mapping from the index of each matched series in `series` to the index of its point, and notes
-    on matched and unmatched series.
-
-    Raises
-    ------
-    UsageError
-        No series matches a point, or the order of the series is ambiguous.
+    the line. Return a mapping from the index of each matched series to the index of its point, and
+    notes on matched and unmatched series. A UsageError is raised if no series matches a point, or
+    if the order is ambiguous.
     """
     who = [(one.label, one.serial, one.nominal, one.source) for one in series]
     first = [who.index(one) for one in who]  # the bins of a profiler are one instrument
@@ -243,7 +187,7 @@ def points_of(series: Sequence[Identity], line: LinePlaces) -> tuple[dict[int, i
         elif not series[i].label and np.isfinite(series[i].nominal):
             placed.append(i)
         else:
-            lost.append(nowhere(series[i], line))
+            lost.append(_nowhere(series[i], line))
     if placed:
         taken, parts = {*found.values()}, range(line.clamps or len(line.label))
         free = [at for at in parts if at not in taken]
@@ -267,10 +211,7 @@ def points_of(series: Sequence[Identity], line: LinePlaces) -> tuple[dict[int, i
 
 
 def named_point(one: Identity, line: LinePlaces) -> int | None:
-    """Return the point that has the label of an instrument or, failing that, its serial number.
-
-    Return None if no point matches, or if several points match.
-    """
+    """Return the only point that has the label of an instrument, or else its serial number."""
     at = _index(one.label, line.label)
     if at is None:
         at = _index(one.serial.lstrip("0"), [serial.lstrip("0") for serial in line.serial])
@@ -285,8 +226,7 @@ def _index(text: str, among: Sequence[str]) -> int | None:
     return None
 
 
-def nowhere(one: Identity, line: LinePlaces) -> str:
-    """Return the message for an instrument that matches no point of the line."""
+def _nowhere(one: Identity, line: LinePlaces) -> str:
     name = one.label or one.serial
     if not name:
         return f"{one.named} has no label, serial number or nominal depth"
@@ -301,23 +241,13 @@ def in_order(
 ) -> tuple[dict[int, int], list[int]]:  # fmt: skip
     """Match series to points by nominal depth, in order down the line.
 
-    Parameters
-    ----------
-    points : candidate points
-    depths : cost per metre of difference between the nominal depth and the depth of the point
-    spacings : cost per metre of difference between the nominal and the actual distance of
-        neighbours; an error common to all nominal depths does not change these distances
-    clear : least excess cost of the second-best match for the best match to be accepted [m]
+    Each metre of difference between the nominal depth and the depth of the point costs `depths`.
+    Each metre of difference between nominal and actual distance of neighbours costs `spacings`; an
+    error common to all nominal depths does not change these distances. A UsageError is raised
+    unless the second-best match costs at least `clear` metres more.
 
-    Returns
-    -------
-    Mapping from the index of each matched series in `series` to the index of its point, and the
-    indices of the unmatched series. Some series are unmatched if there are more series than points.
-
-    Raises
-    ------
-    UsageError
-        The match is ambiguous.
+    Return a mapping from the index of each matched series to the index of its point, and the
+    indices of the unmatched series, which exist if there are more series than points.
     """
     down = sorted(points, key=lambda at: line.still[at])
     rows = sorted(range(len(series)), key=lambda i: series[i].nominal)
@@ -347,13 +277,9 @@ def aligned(
 ) -> tuple[tuple[float, list[int]], tuple[float, list[int]] | None]:
     """Find the cheapest and the second-cheapest way to match each of `few` depths to one of `many`.
 
-    Matches preserve the order. Each match is returned as its cost, and the index in `many` for each
-    of `few`. The second-cheapest match is None if there is only one match.
-
-    Parameters
-    ----------
-    few, many : increasing depths [m]
-    depths, spacings : costs, as in `in_order`
+    Matches preserve the order of the increasing depths [m]; costs are those of `in_order`. Each
+    match is returned as its cost, and the index in `many` for each of `few`. The second is None if
+    there is only one match.
     """
     places = len(many)
 

@@ -3,11 +3,10 @@
 The unknowns at each time are the current at several depths (knots), the relative error in the
 knockdown of each stretch of the line, and the tide. The unknowns of the whole record are factors on
 the drag, the datum, and the offset of each sensor; steps in the datum and the offsets are rare. All
-priors are normal, and states either decay with time or persist. Errors of meters and sensors follow
-Student's t distribution, represented by weights of the readings. The meter error for each quality
-flag and the error of the line are estimated by expectation and maximisation (Dempster, Laird and
-Rubin 1977). Gauss-Newton steps over the whole record use depths and derivatives from solutions of
-the line.
+priors are normal. Errors of meters and sensors follow Student's t distribution, represented by
+weights of the readings. The meter error for each quality flag and the error of the line are
+estimated by expectation and maximisation (Dempster, Laird and Rubin 1977). Gauss-Newton steps over
+the whole record use depths and derivatives from solutions of the line.
 """
 
 from __future__ import annotations
@@ -30,113 +29,65 @@ from calm.motion.measurements import FREE, MooringMeasurements, chosen_times, ne
 from calm.motion.smoother import BLOCK, StateSpace, smoothed
 from calm.physics.line import Floats
 
-TURNS, ENOUGH, PLACED = 20, 0.05, (1, 3, 5, 8, 11)
-"""Maximum number of Gauss-Newton steps, the change in depth that ends them [m], and the steps after
-which the factors are updated.
-"""
+TURNS, ENOUGH = 20, 0.05  # most Gauss-Newton steps, and the change in depth that ends them [m]
+PLACED = (1, 3, 5, 8, 11)  # steps after which the factors are updated
+# step of the logarithm of a factor for its slopes, and change above which slopes are renewed
 FACTOR_STEP = 0.05
-"""Step of the logarithm of a factor for its slopes, and change above which slopes are renewed."""
-STALE = 0.03
-"""Change in a current above which its slopes are renewed [m/s]."""
-LONGEST = 0.5
-"""Maximum change in a current in one step [m/s]."""
+STALE = 0.03  # change in a current above which its slopes are renewed [m/s]
+LONGEST = 0.5  # maximum change in a current in one step [m/s]
 
-MOST_LEVELS, KNOTS, APART = 8, 12, 2.0
-"""Number of levels up to which each is a knot, number of knots for more levels, and the distance
-below which levels share a knot [m].
-"""
-ABOVE, BELOW = 5.0, 20.0
-"""Height of an additional knot above the top of a line that extends above the levels, and least
-distance from the lowest level to the seabed for a knot half-way [m].
-"""
+MOST_LEVELS, KNOTS = 8, 12  # number of levels up to which each is a knot, and knots for more levels
+APART = 2.0  # distance below which levels share a knot [m]
+ABOVE = 5.0  # height of a knot above the top of a line that extends above the levels [m]
+BELOW = 20.0  # least distance from the lowest level to the seabed for a knot half-way [m]
 
+# error of a current meter: constant part [m/s], and share of the speed; times a factor by flag
 METER = 0.02, 0.10
-"""Error of a current meter: constant part [m/s], and share of the speed.
-
-Both are multiplied by a factor that depends on the quality flag.
-"""
+# default factors on the meter error, by quality flag
 FLAGGED: Mapping[int, float] = {0: 1.0, 1: 1.0, 2: 1.5, 3: 2.0, 4: 4.0, 8: 3.0}
-"""Default factors on the meter error, by quality flag."""
-FLAG_RANGE, FEWEST = (0.6, 15.0), 20
-"""Limits of the estimated factor on the meter error, and the least number of readings.
-
-The lower limit is above zero because the current at even a perfect meter differs from the current
-on the line around it.
-"""
-STUDENT = 4.0
-"""Degrees of freedom of Student's t distribution of the readings."""
-ALIKE_HOURS = 1.0
-"""Time over which the error of a meter persists [h]."""
-LEAST_SPREAD = 0.02
-"""Least deviation of a current about its mean [m/s]."""
-CURRENT_HOURS, CURRENT_REACH = 16.0, 600.0
-"""Initial correlation time [h] and correlation depth [m] of the current."""
-HOURS = (4.0, 16.0)
-"""Limits of the estimated correlation time of the current [h]; a longer time would damp tides."""
+# limits of the estimated factor on the meter error: the current at even a perfect meter differs
+# from the current on the line around it
+FLAG_RANGE = (0.6, 15.0)
+FEWEST = 20  # least number of readings for this estimate
+STUDENT = 4.0  # degrees of freedom of Student's t distribution of the readings
+ALIKE_HOURS = 1.0  # time over which the error of a meter persists [h]
+LEAST_SPREAD = 0.02  # least deviation of a current about its mean [m/s]
+CURRENT_HOURS = 16.0  # initial correlation time of the current [h]
+CURRENT_REACH = 600.0  # correlation depth of the current [m]
+HOURS = (4.0, 16.0)  # limits of the estimated correlation time [h]; a longer one would damp tides
+# factor on the prior deviation of the currents for the estimate of the drag: smoothing would damp
+# the strongest currents, and so raise the drag
 WIDER = 2.0
-"""Factor on the prior deviation of the currents for the estimate of the drag.
+METERS_ALIKE = 0.02  # error common to all meters of a record, as a share of the speed
 
-With the unchanged prior, smoothing would damp the strongest currents, and so raise the drag.
-"""
-METERS_ALIKE = 0.02
-"""Error common to all meters of a record, as a share of the speed."""
-
-STRETCHES, SPAN, LOCAL = 10, 0.25, 0.3
-"""Number of stretches with separate errors in knockdown, their correlation length as a share of the
-line, and the local error of a point as a share of its own knockdown.
-
-Without the local error, dune2 is 8 % better, synthetic moorings with ten-minute meters 3 % worse,
-and RAPID's depths without currents up to 26 % worse.
-"""
-SHARE, SHARES, LINE_HOURS = 0.07, (0.01, 0.4), 6.0
-"""Prior and limits of the error share of a stretch, and its correlation time [h]."""
-TIDE_HOURS = 2.4
-"""Correlation time of the tide [h]: the autocorrelation of a semidiurnal tide falls to 1/e."""
+STRETCHES = 10  # number of stretches with separate errors in knockdown
+SHARE, SHARES = 0.07, (0.01, 0.4)  # prior and limits of the error share of a stretch
+LINE_HOURS = 6.0  # correlation time of the error of a stretch [h]
+TIDE_HOURS = 2.4  # correlation time of the tide [h]: that of a semidiurnal tide falls to 1/e
+# typical hourly step of datum and offsets [m]; steps and initial values have Student's t
+# distribution with one degree of freedom, which allows rare steps that are many times as large
 STEP = 0.02
-"""Typical hourly step of the datum and offsets [m].
-
-These steps and the initial values have Student's t distribution with one degree of freedom, which
-allows rare steps that are many times as large.
-"""
+# weight 1 / (1 + n) of the square of an unknown in its variance, for n degrees of freedom; a place
+# of 2 cm begins at a variance of 1 m², and shrinks unless it exceeds four deviations
 TAILS = {"datum": 1.0 / 2.0, "place": 1.0 / 5.0}
-"""Weight 1 / (1 + n) of the square of an unknown in its variance, for n degrees of freedom.
-
-A place of 2 cm begins at a variance of 1 m², and shrinks unless it exceeds four deviations.
-"""
-ZEROS = 2.0
-"""Variance of Student's law with four degrees of freedom over that of a normal law."""
-SETTLED = 6
-"""Number of steps before the line error is estimated, as it would absorb sensor steps."""
-LONGER = 30.0
-"""Maximum factor by which a step of the line error is lengthened."""
-FURTHEST = 0.7
-"""Maximum logarithm of a factor."""
+ZEROS = 2.0  # variance of Student's law with four degrees of freedom over that of a normal law
+SETTLED = 6  # number of steps before the line error is estimated, as it would absorb sensor steps
+LONGER = 30.0  # maximum factor by which a step of the line error is lengthened
+FURTHEST = 0.7  # maximum logarithm of a factor
 
 
 @dataclass(frozen=True)
 class Knots:
-    """Depths (knots) at which the current is estimated, and interpolation from knots to levels.
+    """Depths (knots) at which the current is estimated, and interpolation from knots to levels."""
 
-    Attributes
-    ----------
-    depth : (K,) depths of the knots in still water, increasing [m]
-    level : (k, K) weights with which the knots contribute to the current at each level
-    measured : indices of the levels that coincide with a knot, and the indices of these knots
-    seabed : depth of the water [m]
-    """
-
-    depth: Floats
-    level: Floats
+    depth: Floats  # (K,) depths of the knots in still water, increasing [m]
+    level: Floats  # (k, K) weights with which the knots contribute to the current at each level
+    # indices of the levels that coincide with a knot, and the indices of these knots
     measured: tuple[NDArray[np.int64], NDArray[np.int64]]
-    seabed: float
+    seabed: float  # depth of the water [m]
 
     def at(self, levels: Floats) -> Floats:
-        """Return depths (n, K) of the knots, which move with the levels [m].
-
-        Parameters
-        ----------
-        levels : (n, k) depths of the levels [m]
-        """
+        """Return depths (n, K) of the knots, which move with the levels (n, k) [m]."""
         level, knot = self.measured
         place = np.append(self.depth[knot], self.seabed)
         off = np.pad(levels[:, level] - self.depth[knot], ((0, 0), (0, 1)))
@@ -152,13 +103,9 @@ class Knots:
 def knots_of(place: Floats, top: float, seabed: float) -> Knots:
     """Choose the knots for levels of measured current.
 
-    If there are few levels, each level is a knot. A knot may be added above the top of the line,
-    and another below the lowest level.
-
-    Parameters
-    ----------
-    place : (k,) depths of the levels in still water, in any order [m]
-    top, seabed : depths of the top of the line and of the seabed [m]
+    If there are few levels, each is a knot. A knot may be added above the top of the line, and
+    another below the lowest level. The levels have the depths `place` (k,) in still water, in any
+    order [m].
     """
     order = np.argsort(place, kind="stable")
     chosen: list[int] = []
@@ -178,16 +125,10 @@ def knots_of(place: Floats, top: float, seabed: float) -> Knots:
 
 @dataclass(frozen=True)
 class Columns:
-    """Slices of the state vector, by kind of unknown.
+    """Slices of the state vector: currents at the knots, errors of the stretches, and tide.
 
-    Attributes
-    ----------
-    current : currents at the knots
-    share : relative errors of the stretches of the line
-    tide : height of the tide
-    factor : logarithms of the factors
-    datum : correction common to all depths
-    zero, place : errors in the zeros of the sensors, and in their positions on the line
+    These are followed by the logarithms of the factors, the datum, and errors in the zeros of the
+    sensors and in their places on the line.
     """
 
     current: slice
@@ -217,27 +158,17 @@ class Columns:
 
 @dataclass(frozen=True)
 class ErrorScales:
-    """Sizes and correlation time of the errors, estimated from the record.
+    """Sizes and correlation time of the errors, estimated from the record."""
 
-    Attributes
-    ----------
-    flag : factor on the error of a current meter, by quality flag
-    share : error of each stretch of the line, as a share of the knockdown of the stretch
-    tide : standard deviation of the tide [m]
-    hours : correlation time of the current [h]
-    """
-
-    flag: Mapping[int, float]
+    flag: Mapping[int, float]  # factor on the error of a current meter, by quality flag
+    # error of each stretch of the line, as a share of the knockdown of the stretch
     share: float = SHARE
-    tide: float = common_unknowns.TIDE
-    hours: float = CURRENT_HOURS
+    tide: float = common_unknowns.TIDE  # standard deviation of the tide [m]
+    hours: float = CURRENT_HOURS  # correlation time of the current [h]
 
 
 class CurrentSmoother:
-    """Joint estimate of the currents, line errors, sensor errors and tide over a whole record.
-
-    The record has measured currents.
-    """
+    """Joint estimate of currents, line errors, sensor errors and tide over a whole record."""
 
     def __init__(
         self, mooring: Design, measured: MooringMeasurements, names: Sequence[str]
@@ -246,12 +177,10 @@ class CurrentSmoother:
         self.still = Forward(mooring, {}).still
         self.seabed = float(mooring.water.depth)
         one = measured
-        self.places = place = np.array(
-            [
-                self.still[point] if point != FREE else np.nanmean(one.level_depth[:, k])
-                for k, point in enumerate(one.level_point.tolist())
-            ]
-        )
+        self.places = place = np.array([
+            self.still[point] if point != FREE else np.nanmean(one.level_depth[:, k])
+            for k, point in enumerate(one.level_point.tolist())
+        ])  # fmt: skip
         self.hours = (one.time - one.time[:1]) / np.timedelta64(1, "h")
         self.knots = knots_of(place, float(self.still.min()), self.seabed)
         count, sensors = len(self.knots.depth), len(one.label)
@@ -280,7 +209,7 @@ class CurrentSmoother:
         self._last, self._longer = 0.0, 4.0
         self.factor = np.zeros(len(self.names))
         step = np.diff(self.hours, prepend=self.hours[:1])
-        steps = np.repeat([1.0, 0.0, 1.0], [1, sensors, sensors])  # a zero is constant
+        steps = np.repeat([1.0, 0.0, 1.0], [1, sensors, sensors])  # zeros are constant
         self.usual = STEP**2 * step[:, None] * steps
         self._forwards: dict[tuple[float, ...], Forward] = {}
         self.bend = np.zeros((len(one.time), len(self.still)))
@@ -296,7 +225,7 @@ class CurrentSmoother:
         return np.interp(self.knots.depth, place[order], value[order])
 
     def _measured_state(self, place: Floats) -> Floats:
-        """Return (n, 2 K) measured currents less their mean, interpolated to the knots."""
+        """Return (n, 2 K) measured currents minus their mean, interpolated to the knots."""
         both = self.measured.u + 1j * self.measured.v
         known = np.flatnonzero(np.isfinite(both).any(axis=1))
         state = np.zeros((len(both), len(self.mean)))
@@ -314,24 +243,16 @@ class CurrentSmoother:
         return whole[:, :count], whole[:, count:]
 
     def depths(self, state: Floats, factor: Floats, times: NDArray[np.int64] | slice) -> Floats:
-        """Return (n, p) depths of the points [m].
+        """Return (n, p) depths of the points [m] in currents (n, 2 K) relative to their mean.
 
-        Parameters
-        ----------
-        state : (n, 2 K) currents at the knots minus their mean [m/s]
-        factor : (f,) logarithms of the factors
-        times : indices of the times to which the rows of `state` belong
+        The factors have the logarithms (f,); the currents are those of the times with these
+        indices.
         """
         forward = self.forward(factor)
         return forward.depths(self.knot_depth[times], *self.currents(state))
 
     def forward(self, factor: Floats) -> Forward:
-        """Return the mooring with given factors, from a small cache if possible.
-
-        Parameters
-        ----------
-        factor : (f,) logarithms of the factors
-        """
+        """Return the mooring with factors of given logarithms (f,), from a small cache."""
         key = tuple(factor.tolist())
         if key not in self._forwards:
             factors = dict(zip(self.names, np.exp(factor).tolist(), strict=True))
@@ -341,10 +262,7 @@ class CurrentSmoother:
         return self._forwards[key]
 
     def linear(self) -> Floats:
-        """Return (n, p) depths of the points at the current state [m].
-
-        The slopes are recomputed at times where the state has changed.
-        """
+        """Return (n, p) depths of the points [m], and renew slopes if the state has changed."""
         now, factor = self.state[:, self.columns.current], self.factor
         far = np.abs(now - self._slopes_at).max(axis=1) > STALE
         far |= (np.abs(factor - self._slopes_factor) > FACTOR_STEP).any()
@@ -363,7 +281,10 @@ class CurrentSmoother:
     def _with_slopes(
         self, state: Floats, factor: Floats, times: NDArray[np.int64]
     ) -> tuple[Floats, Floats]:
-        """Return depths, and (n, p, 2 K + f) derivatives by currents and logarithms of factors."""
+        """Return depths, and their derivatives (n, p, 2 K + f).
+
+        The derivatives are with respect to the currents and the logarithms of the factors.
+        """
         flow = self.knot_depth[times], *self.currents(state)
         there, slopes = self.forward(factor).slopes(*flow)
         steps = FACTOR_STEP * np.eye(len(factor))
@@ -375,54 +296,37 @@ class CurrentSmoother:
     def _stretches(self) -> tuple[Floats, NDArray[np.int64], Floats]:
         """Limits of the stretches, stretch of each point, and correlation between the stretches.
 
-        The limits are depths in still water [m], from the seabed up. The correlation applies to the
-        relative errors in knockdown.
+        The limits are depths in still water [m], from the seabed up.
         """
         edges = np.linspace(self.still.max(), self.still.min(), STRETCHES + 1)
         own = np.clip(np.searchsorted(-edges, -self.still, "right") - 1, 0, STRETCHES - 1)
         middle = 0.5 * (edges[1:] + edges[:-1])
-        span = max(SPAN * float(np.ptp(self.still)), 1.0)
+        span = max(line_response.SPAN * float(np.ptp(self.still)), 1.0)
         return edges, own, np.exp(-np.abs(middle[:, None] - middle) / span)
 
     def by_line(self, there: Floats) -> Floats:
-        """Return derivatives of the depths with respect to the relative errors of the stretches.
-
-        The result has shape (n, p, z), for z stretches of the line.
-
-        Parameters
-        ----------
-        there : (n, p) depths of the points [m]
-        """
+        """Return derivatives (n, p, z) of depths (n, p) [m] by relative errors of z stretches."""
         edges, own, _ = self._stretches
         order = np.argsort(self.still, kind="stable")
         down = np.maximum(np.nan_to_num(there - self.still), 0.0)
         place = self.still[order]
         after = np.clip(np.searchsorted(place, edges), 1, len(place) - 1)
-        share = np.clip(
-            (edges - place[after - 1]) / np.maximum(place[after] - place[after - 1], 1e-9), 0, 1
-        )
-        sorted_down = down[:, order]
-        at_edge = (1.0 - share) * sorted_down[:, after - 1] + share * sorted_down[:, after]
-        part = np.diff(at_edge, axis=1)
-        number = np.arange(STRETCHES)
-        result = part[:, None, :] * (number < own[:, None])
-        mine = down - at_edge[:, own] + LOCAL * down
-        result[:, np.arange(len(own)), own] = mine
+        apart = np.maximum(place[after] - place[after - 1], 1e-9)
+        share = np.clip((edges - place[after - 1]) / apart, 0, 1)
+        upper, lower = down[:, order[after - 1]], down[:, order[after]]
+        at_edge = (1.0 - share) * upper + share * lower
+        result = np.diff(at_edge, axis=1)[:, None, :] * (np.arange(STRETCHES) < own[:, None])
+        result[:, np.arange(len(own)), own] = down - at_edge[:, own] + line_response.LOCAL * down
         return result
 
     # --- the law
 
     def meter_law(self) -> StateSpace:
-        """Return a state-space model of the currents at the knots.
-
-        The readings of this model are those of the current meters, without the pressures.
-        """
+        """Return a state-space model of the currents at the knots, as read by the meters alone."""
         one, both = self.measured, np.eye(2)
         apart = np.abs(self.knots.depth[:, None] - self.knots.depth)
         alike = np.exp(-apart / CURRENT_REACH) * np.outer(self.spread, self.spread)
-        steady, weights = (
-            np.asarray(np.kron(both, one), np.float64) for one in (alike, self.knots.level)
-        )
+        steady, weights = (np.asarray(np.kron(both, each)) for each in (alike, self.knots.level))
         step = np.diff(self.hours, prepend=self.hours[:1])[:, None]
         fade = np.tile(np.exp(-step / self.scales.hours), (1, len(steady)))
         flow = np.hstack([one.u, one.v]) - weights @ self.mean
@@ -431,13 +335,9 @@ class CurrentSmoother:
         return StateSpace(fade, steady, np.zeros_like(fade), steady, seen, flow, noise)
 
     def law(self, there: Floats) -> tuple[StateSpace, Floats]:
-        """Return the state-space model about the current state, and the slopes of the depths.
+        """Return the state-space model about the current state, and slopes (n, p, q) of the depths.
 
-        The slopes (n, p, q) are derivatives with respect to the unknowns.
-
-        Parameters
-        ----------
-        there : (n, p) depths of the points at the current state [m]
+        The points have the depths (n, p) at the current state [m].
         """
         one, at, own = self.measured, self.columns, self.meter_law()
         n, flows = own.fade.shape
@@ -485,10 +385,8 @@ class CurrentSmoother:
         table = np.array([self.scales.flag.get(f, FLAGGED[4]) for f in range(256)])
         u, v = self.at_levels
         speed = np.hypot(u, v)
-        noise: Floats = (METER[0] ** 2 + (METER[1] * speed) ** 2) * table[
-            one.flag.astype(np.uint8)
-        ] ** 2
-        return noise
+        factor = table[one.flag.astype(np.uint8)]
+        return np.asarray((METER[0] ** 2 + (METER[1] * speed) ** 2) * factor**2)
 
     @property
     def at_levels(self) -> tuple[Floats, Floats]:
@@ -501,11 +399,9 @@ class CurrentSmoother:
     def solve(self, slips: Sequence[tuple[int, int, float]] = ()) -> None:
         """Iterate until the depths converge.
 
-        Parameters
-        ----------
-        slips : steps in sensor readings with which to begin, each as index of the sensor, index of
-            the time, and size [m]; without them, the iterations for two or three sensors may
-            attribute the step of one sensor to an offset of another sensor
+        `slips` are steps in sensor readings with which to begin: indices of sensor and time, and
+        size [m]. Without them, the iterations for two or three sensors may attribute the step of
+        one sensor to an offset of another.
         """
         self.stepped = self.usual.copy()
         for sensor, time, size in slips:
@@ -515,9 +411,8 @@ class CurrentSmoother:
         for turn in range(TURNS):
             there, before = self.linear(), self.depth
             if turn == 0:
-                off = np.nan_to_num(
-                    np.nanmedian(self.measured.depth - there[:, self.measured.point], axis=0)
-                )
+                missed = self.measured.depth - there[:, self.measured.point]
+                off = np.nan_to_num(np.nanmedian(missed, axis=0))
                 usual = float(np.median(off)) if len(off) else 0.0
                 square = [usual**2, 0.0, OFFSET**2 / TAILS["place"]]
                 self.first = self._heavy(np.repeat(square, [1, len(off), len(off)]))
@@ -539,9 +434,9 @@ class CurrentSmoother:
     def _place(self) -> None:
         """Update the factors by a Gauss-Newton step, with currents estimated from the meters alone.
 
-        Currents that also fit the pressures would become too small, and the drag too large. The
-        weight of successive times with a common error is reduced, and steps of the datum and the
-        offsets are subtracted first.
+        Currents that also fit the pressures would become too small, and the drag too large.
+        Successive times with a common error count less, and steps of datum and offsets are
+        subtracted first.
         """
         times = chosen_times(self.measured)
         if not self.names or not len(times):
@@ -568,8 +463,8 @@ class CurrentSmoother:
     def _grown(self, step: float) -> float:
         """Return the relative error of the line after a step of its logarithm.
 
-        Steps of expectation and maximisation are short if the pressures constrain the error poorly.
-        They are lengthened as long as they have the same sign.
+        Steps of expectation and maximisation are short if the pressures constrain the error poorly;
+        they are lengthened as long as they have the same sign.
         """
         same = step * self._last > 0.0
         self._longer = min(1.5 * self._longer, LONGER) if same else max(self._longer / 3.0, 1.0)
@@ -657,12 +552,8 @@ class CurrentSmoother:
         down = np.maximum(there - self.still, 1.0)
         self.bend = np.minimum(0.5 * curved / down, down)
         beside = np.r_[at.share, at.factor]
-        self.depth = (
-            there
-            + self.bend
-            + self.surface[:, None]
-            + np.einsum("npz,nz->np", slope[:, :, beside], now[:, beside])
-        )
+        by_rest = np.einsum("npz,nz->np", slope[:, :, beside], now[:, beside])
+        self.depth = there + self.bend + self.surface[:, None] + by_rest
         self.deviation = np.sqrt(np.maximum(variance, 0.0))
 
     # --- results
@@ -735,9 +626,8 @@ class CurrentSmoother:
     def doubt(self) -> Floats:
         """Probability (n, k) that the meter reading at a level is unrelated to the current there.
 
-        The probability follows from the prior odds and the ratio of two normal densities of the
-        reading. One density has the variance of the meter error; the other also includes the
-        variability of the current.
+        It follows from the prior odds and two normal densities of the reading: one has the variance
+        of the meter error, the other also includes the variability of the current.
         """
         one, noise = self.measured, self.meter_noise
         spread = np.square(self.knots.level @ self.spread)
@@ -746,15 +636,13 @@ class CurrentSmoother:
         wide = noise + spread
         log = np.log(odds / (1.0 - odds)) + np.log(noise / wide)
         log += 0.5 * self.off * (1.0 / noise - 1.0 / wide)
-        doubt: Floats = np.nan_to_num(1.0 / (1.0 + np.exp(-np.clip(log, -50.0, 50.0))))
-        return doubt
+        return np.asarray(np.nan_to_num(1.0 / (1.0 + np.exp(-np.clip(log, -50.0, 50.0)))))
 
     def by_meters(self, times: NDArray[np.int64]) -> tuple[LinearLaw, ReadCurrents, Linear]:
         """Return a linear model of the pressures at several times, with currents from meters alone.
 
-        The model is linearised about the smoothed currents of the meters. Also return these
-        currents at the knots, and the line in these currents with its slopes with respect to the
-        logarithm of a factor on all speeds.
+        Also return these currents at the knots, and the line in these currents with its slopes by
+        the logarithm of a factor on all speeds.
         """
         one, at, factor, law = self.measured, self.columns, self.factor, self.meter_law()
         wide = WIDER**2 * law.steady

@@ -23,49 +23,32 @@ from calm.records.instrument_series import InstrumentSeries, split_label
 from calm.records.record import RULES
 from calm.records.velocity import MISSING
 
-MOST_TIMES = 500
-"""Maximum number of times for the common unknowns, spread evenly over the record."""
+MOST_TIMES = 500  # maximum number of times for the common unknowns, spread evenly over the record
 
 Times = NDArray[np.datetime64]
 
-FREE = -1
-"""Index for a level without a point or a sensor."""
+FREE = -1  # index for a level without a point or a sensor
 
 
 @dataclass(frozen=True)
 class MooringMeasurements:
-    """Currents and depths at n times, from s sensors and k levels.
+    """Currents and depths at n times, from s sensors and k levels."""
 
-    Attributes
-    ----------
-    time : (n,) increasing times, to the nanosecond
-    label : (s,) labels of the sensors
-    point : (s,) index of the point of each sensor, as defined in
-        `calm.motion.line_response.Forward`
-    depth : (n, s) depths of the sensors from their pressures [m]; NaN if missing or rejected by a
-        flag
-    level_depth : (n, k) depths of the levels [m]; NaN for levels on the line
-    level_point : (k,) index of the point of each level on the line; `FREE` for fixed levels
-    u, v : (n, k) eastward and northward current [m/s]; NaN if missing
-    flag : (n, k) quality flags of the current; 0 if the file has no flags
-    tide : (n,) height of the sea surface above mean sea level [m]; None if unknown
-    false : (n,) whether an impossible current was removed at this time; None if no current was
-        removed
-    sunk : (n,) increase in depth of the whole mooring since the start [m]; None if the mooring
-        never moved
-    """
-
-    time: NDArray[np.datetime64]
-    label: tuple[str, ...]
-    point: Integers
+    time: NDArray[np.datetime64]  # (n,) increasing times, to the nanosecond
+    label: tuple[str, ...]  # (s,) labels of the sensors
+    point: Integers  # (s,) points of the sensors, as defined in `calm.motion.line_response.Forward`
+    # (n, s) depths of the sensors from their pressures [m]; NaN if missing or rejected
     depth: Floats
-    level_depth: Floats
-    level_point: Integers
-    u: Floats
-    v: Floats
-    flag: NDArray[np.int8]
+    level_depth: Floats  # (n, k) depths of the levels [m]; NaN for levels on the line
+    level_point: Integers  # (k,) points of the levels on the line; `FREE` for fixed levels
+    u: Floats  # (n, k) eastward current [m/s]; NaN if missing
+    v: Floats  # (n, k) northward current [m/s]; NaN if missing
+    flag: NDArray[np.int8]  # (n, k) quality flags of the current; 0 if the file has no flags
+    # (n,) height of the sea surface above mean sea level [m]; None if unknown
     tide: Floats | None = None
+    # (n,) whether an impossible current was removed; None if none was removed
     false: NDArray[np.bool_] | None = None
+    # (n,) increase in depth of the whole mooring since the start [m]; None if it never moved
     sunk: Floats | None = None
 
     @property
@@ -98,10 +81,7 @@ class MooringMeasurements:
 
 
 def chosen_times(measured: MooringMeasurements, alone: bool = False) -> Integers:
-    """Choose up to `MOST_TIMES` times with a current and a pressure, evenly spread over the record.
-
-    If `alone` is true, times with a pressure but no current are also eligible.
-    """
+    """Choose up to `MOST_TIMES` times with a pressure and, unless `alone`, a current."""
     currents = (np.isfinite(measured.u) & np.isfinite(measured.v)) | alone
     used = np.flatnonzero(np.isfinite(measured.depth).any(axis=1) & currents.any(axis=1))
     if len(used) <= MOST_TIMES:
@@ -114,20 +94,13 @@ def level_names(measured: MooringMeasurements, labels: Sequence[str]) -> tuple[s
     names = []
     for k, point in enumerate(measured.level_point.tolist()):
         depth = measured.level_depth[:, k]
-        known = depth[np.isfinite(depth)]
-        at = f"{known.mean():.1f} m" if known.size else f"level {k + 1}"
+        at = f"{np.nanmean(depth):.1f} m" if np.isfinite(depth).any() else f"level {k + 1}"
         names.append(at if point == FREE else labels[point])
     return tuple(names)
 
 
 def nearest(time: Times, wanted: Times) -> Integers:
-    """Return the index (n,) of the time nearest to each wanted time; in a tie, the earlier time.
-
-    Parameters
-    ----------
-    time : (m,) increasing times
-    wanted : (n,) wanted times
-    """
+    """Return the index (n,) of the time nearest to each wanted time; in a tie, the earlier time."""
     after = np.clip(np.searchsorted(time, wanted), 0, len(time) - 1)
     before = np.maximum(after - 1, 0)
     earlier = np.abs(wanted - time[before]) <= np.abs(time[after] - wanted)
@@ -139,10 +112,9 @@ def common_times(
 ) -> Times:
     """Choose the common times of all measurements.
 
-    The times of the first current record, or of the first sensor if there is none, are chosen
-    first. The times of the other currents, and then of the sensors, are added if they are more than
-    half the median time step away from all times chosen before. Of several added readings within a
-    quarter of the step (a burst), only the first is used.
+    The times of the first current record, or of the first sensor if there is none, are extended by
+    those of the others that are more than half the median time step away. Of several added readings
+    within a quarter of the step (a burst), only the first is used.
     """
     everything: list[CurrentMeasurements | InstrumentSeries] = [*currents, *sensors]
     times = everything[0].time
@@ -163,14 +135,9 @@ def _sparse(times: Times, step: np.timedelta64) -> Times:
 
 
 def interpolated(time: Times, value: Floats, wanted: Times, gap: np.timedelta64) -> Floats:
-    """Interpolate values linearly to other times (n,); the result is NaN in gaps longer than `gap`.
+    """Interpolate (m,) values linearly to other times (n,).
 
-    Parameters
-    ----------
-    time : (m,) increasing times
-    value : (m,) values at these times; NaN if unknown
-    wanted : (n,) other times
-    gap : longest time between two known values over which to interpolate
+    The result is NaN if the known values on either side are further apart than `gap`.
     """
     known = np.isfinite(value)
     if not known.any():
@@ -188,16 +155,13 @@ def interpolated(time: Times, value: Floats, wanted: Times, gap: np.timedelta64)
 
 def _measured_at(one: InstrumentSeries, wanted: Times, gap: np.timedelta64) -> Floats:
     """Interpolate depths to other times; a reading at exactly that time is used even if missing."""
-    result = interpolated(one.time, one.value, wanted, gap)
     at = np.minimum(np.searchsorted(one.time, wanted), len(one.time) - 1)
-    own: Floats = np.where(one.time[at] == wanted, one.value[at], result)
-    return own
+    between = interpolated(one.time, one.value, wanted, gap)
+    return np.where(one.time[at] == wanted, one.value[at], between)
 
 
-FAR_NEIGHBOURS = 4.0
-"""Maximum span between the readings before and after a time, in steps of the record."""
-SPIKE, ALIKE = 6.0, 3.0
-"""Deviations of a spike, and deviations below which all others agree with their neighbours."""
+FAR_NEIGHBOURS = 4.0  # maximum steps between the readings before and after a time
+SPIKE, ALIKE = 6.0, 3.0  # deviations of a spike, and limit for all other sensors
 
 
 def without_spikes(
@@ -206,12 +170,8 @@ def without_spikes(
     """Remove readings far from the readings before and after, if other sensors show no change.
 
     The deviation of a reading from the straight line between the two adjacent readings is compared
-    with the usual deviation and with a quarter of the difference between the adjacent readings.
-    Also return notes on the removal.
-
-    Parameters
-    ----------
-    hidden : labels of sensors that are neither tested nor used to test others
+    with the usual deviation and with a quarter of the difference between the adjacent readings. The
+    sensors `hidden` are neither tested nor used to test others. Also return notes on the removal.
     """
     hours = (measured.time - measured.time[:1]) / np.timedelta64(1, "h")
     step = float(np.median(np.diff(hours))) if len(hours) > 1 else 0.0
@@ -240,20 +200,15 @@ def without_spikes(
 def exclude_readings(
     measured: MooringMeasurements, wrong: NDArray[np.bool_]
 ) -> tuple[MooringMeasurements, list[tuple[str, int, float, str]]]:
-    """Remove the readings that `wrong` (t, s) marks.
+    """Remove the readings that `wrong` (n, s) marks.
 
-    Also return, for each sensor with removed readings: its label, the number of these readings, and
-    the depth [m] and time of the first.
+    Also return the label, number of readings, and first depth [m] and time of each such sensor.
     """
+    first = [(j, at) for j, at in enumerate(wrong.argmax(axis=0).tolist()) if wrong[at, j]]
+    counts, time = wrong.sum(axis=0).tolist(), np.datetime_as_string(measured.time, "s")
     excluded = [
-        (
-            measured.label[j],
-            int(wrong[:, j].sum()),
-            float(measured.depth[at, j]),
-            str(np.datetime_as_string(measured.time[at], "s")),
-        )
-        for j, at in enumerate(wrong.argmax(axis=0).tolist())
-        if wrong[at, j]
+        (measured.label[j], counts[j], float(measured.depth[at, j]), str(time[at]))
+        for j, at in first
     ]
     return replace(measured, depth=np.where(wrong, np.nan, measured.depth)), excluded
 
@@ -269,19 +224,9 @@ def joined(
 ) -> MooringMeasurements:
     """Combine all measurements on common times, with levels and sensors from the top down.
 
-    Parameters
-    ----------
-    points : index of the point of each sensor
-    labels : labels of all points
-    still : (p,) depths of all points in still water [m]
-    gap : longest gap over which values are interpolated
-    sea_level : times, and heights of the sea surface above an arbitrary datum [m]
-
-    Raises
-    ------
-    UsageError
-        A current has a label that no part of the line has, the sea level covers none of the times,
-        or no time has both a current and a pressure.
+    Each sensor has one of `points`, whose labels and depths in still water [m] are `labels` and
+    `still`. Values are interpolated over gaps of at most `gap`. The heights [m] of `sea_level` may
+    have any datum.
     """
     time = common_times(currents, sensors)
     order = np.argsort([still[point] for point in points], kind="stable")
@@ -315,18 +260,10 @@ def joined(
             raise UsageError("--sea-level: the file covers none of the times of the estimate")
         tide = np.nan_to_num(tide - np.nanmean(tide))
     when = [one.time[one.false] for one in currents if one.false is not None]
+    false = np.isin(time, np.concatenate(when)) if when else None
+    hung, names = np.array([c[1] for c in columns], np.int64), [labels[at] for at in point.tolist()]
     measured = MooringMeasurements(
-        time,
-        tuple(labels[where] for where in point.tolist()),
-        point,
-        depth,
-        level,
-        np.array([column[1] for column in columns], np.int64),
-        u,
-        v,
-        flag.astype(np.int8),
-        tide,
-        np.isin(time, np.concatenate(when)) if when else None,
+        time, tuple(names), point, depth, level, hung, u, v, flag.astype(np.int8), tide, false
     )
     both = (np.isfinite(u) & np.isfinite(v)).any(axis=1) & np.isfinite(depth).any(axis=1)
     if currents and not both.any():
@@ -342,37 +279,25 @@ def _nearest(one: CurrentMeasurements, k: int, time: Times) -> NDArray[np.int8]:
     after = np.searchsorted(one.time, time)
     upper, lower = np.minimum(after, len(one.time) - 1), np.maximum(after - 1, 0)
     exact = one.time[upper] == time
-    flags = np.maximum(one.flag[upper, k], one.flag[lower, k])
-    flags = np.where(exact, one.flag[upper, k], flags)
+    flags = np.maximum(one.flag[upper, k], one.flag[np.where(exact, upper, lower), k])
     outside = (after == len(one.time)) | ((after == 0) & ~exact)
     return np.where(outside, MISSING, flags).astype(np.int8)
 
 
 @dataclass(frozen=True)
 class CurrentMeasurements:
-    """Currents of one file.
+    """Currents of one file, at n times and k levels."""
 
-    Attributes
-    ----------
-    time : (n,) increasing times, to the nanosecond
-    depth : (n, k) depths of the levels [m]; NaN for levels on the line
-    label : (k,) label of the part of the line at each level; empty for levels at fixed depths
-    u, v : (n, k) eastward and northward current [m/s]
-    flag : (n, k) quality flags; 0 if the file has no flags
-    source : name of the file
-    notes : remarks on the file
-    false : (n,) whether an impossible current was removed at this time; None if no current was
-        removed
-    """
-
-    time: NDArray[np.datetime64]
-    depth: Floats
+    time: NDArray[np.datetime64]  # (n,) increasing times, to the nanosecond
+    depth: Floats  # (n, k) depths of the levels [m]; NaN for levels on the line
+    # (k,) label of the part of the line at each level; empty for levels at fixed depths
     label: tuple[str, ...]
-    u: Floats
-    v: Floats
-    flag: NDArray[np.int8]
-    source: str
+    u: Floats  # (n, k) eastward current [m/s]
+    v: Floats  # (n, k) northward current [m/s]
+    flag: NDArray[np.int8]  # (n, k) quality flags; 0 if the file has no flags
+    source: str  # name of the file
     notes: tuple[str, ...] = ()
+    # (n,) whether an impossible current was removed; None if none was removed
     false: NDArray[np.bool_] | None = None
     cards: tuple[ReadCard, ...] = ()
 
@@ -387,20 +312,9 @@ def read_currents(
     """Read the currents of several files.
 
     Each file is given by its path. A file with a single level may be given as ``LABEL=PATH``.
-
-    Parameters
-    ----------
-    seabed : depth of the water [m]
-    place : latitude and longitude of the mooring [degrees], if known
-    declination : magnetic declination, positive to the east [degrees]
-    maximum_speed : speed above which a current is removed and noted [m/s]
-
-    Raises
-    ------
-    InputError
-        A file is unreadable.
-    UsageError
-        A label is given for a file of several levels.
+    Speeds above `maximum_speed` [m/s] are removed and noted. `seabed` is the depth of the water
+    [m], `place` the latitude and longitude of the mooring, and `declination` the magnetic
+    declination, positive to the east [degrees].
     """
     found, terms = [], Terms(seabed, place, declination, on_the_line=True)
     for text in given:
@@ -408,17 +322,14 @@ def read_currents(
         with open_record(path, terms) as record:
             depth, u, v, _ = record.profiles(0, record.count)
             marks = record.flags(0, record.count)
+            marks = np.zeros(u.shape, np.int8) if marks is None else marks
+            notes = tuple(note for note in record.notes if note not in RULES)
+            depth, labels = np.broadcast_to(depth, u.shape).copy(), record.labels
+            labels = labels or ("",) * u.shape[1]
             mine = CurrentMeasurements(
-                np.asarray(record.time),
-                np.broadcast_to(depth, u.shape).copy(),
-                record.labels or ("",) * u.shape[1],
-                u,
-                v,
-                np.zeros(u.shape, np.int8) if marks is None else marks,
-                path.name,
-                tuple(note for note in record.notes if note not in RULES),
+                np.asarray(record.time), depth, labels, u, v, marks, path.name, notes,
                 cards=record.cards,
-            )
+            )  # fmt: skip
         if label:
             if len(mine.label) > 1:
                 raise UsageError(

@@ -25,12 +25,7 @@ from calm.motion.correction import BLOCK, MeasuredRecord, Task, motion_layout, s
 from calm.motion.diagnosis import diagnosed
 from calm.motion.line_response import instruments_of
 from calm.motion.matching import without
-from calm.motion.measurements import (
-    MooringMeasurements,
-    joined,
-    read_currents,
-    without_spikes,
-)
+from calm.motion.measurements import MooringMeasurements, joined, read_currents, without_spikes
 from calm.motion.remarks import ALL, Fault
 from calm.motion.study import MotionEstimate, cross_validated, judged, prepare, several
 from calm.motion.suspects import common_step, distances_of, torn
@@ -44,23 +39,17 @@ if TYPE_CHECKING:
 
 
 _MATCHES = ("label", "height", "depth")
-CORRECTABLE = ("clock", "gain", "offset", "drift", "air")
-"""Correctable errors of a sensor: faults of `calm.motion.remarks.Fault`, and air pressure."""
-GAP = np.timedelta64(2, "h")
-"""Default limit on the gap over which values are interpolated."""
+CORRECTABLE = ("clock", "gain", "offset", "drift", "air")  # kinds of `Fault`, and air pressure
+GAP = np.timedelta64(2, "h")  # default limit on the gap over which values are interpolated
 
 
-RARE = 0.1
-"""A note is added if the share of times with two sensors is below this value."""
+RARE = 0.1  # a note is added if the share of times with two sensors is below this value
 
 
 def shared_times(measured: MooringMeasurements, currents: bool) -> list[str]:
     """Return a note if few times have pressures from two or more sensors.
 
-    Raises
-    ------
-    UsageError
-        No time has pressures from two sensors, and no current was measured.
+    If there is no such time and no current was measured, a UsageError is raised.
     """
     if len(measured.label) < 2:
         return []
@@ -85,14 +74,8 @@ def shared_times(measured: MooringMeasurements, currents: bool) -> list[str]:
 def fitted(requested: Sequence[str] = (), currents: bool = True) -> tuple[str, ...]:
     """Return the names of the factors to estimate: the defaults and the requested factors.
 
-    With measured currents, the defaults are the two drag factors. Without measured currents, a
-    factor on all drag cannot be distinguished from a factor on the currents; the defaults are then
-    the drag of rigid pieces and the length.
-
-    Raises
-    ------
-    UsageError
-        A requested factor cannot be estimated.
+    Without measured currents, a factor on all drag cannot be distinguished from a factor on the
+    currents; the defaults are then the drag of rigid pieces and the length.
     """
     for name in requested:
         if name not in FACTORS:
@@ -105,35 +88,16 @@ def fitted(requested: Sequence[str] = (), currents: bool = True) -> tuple[str, .
 class RecoveredMooring:
     """A recovered mooring with its records.
 
-    Creating the object reads and corrects the measurements. `estimate` then estimates the motion,
-    and `study` compares the result with the measurements.
+    Creating the object reads the records and corrects known errors. `estimate` then estimates the
+    motion, and `study` compares the result with the measurements. The first attributes are the
+    parameters of `estimate_motion`, with all files as paths or ``LABEL=PATH``.
 
     Attributes
     ----------
-    mooring : mooring with a position
-    pressures, currents : files, as paths or ``LABEL=PATH``
-    match : how sensors are matched to the line: by `label`, or by nominal `height` or `depth`
-    fit : factors to estimate in addition to the drag
-    hold_out : labels of sensors that are withheld to test the result
-    cross_validate : whether to withhold each sensor in turn
-    correct : kinds of fault to correct, from `CORRECTABLE`; a fault is corrected only if no other
-        fault is as likely
-    sea_level : path of the sea-surface heights
-    flags : accepted quality flags of the pressures, separated by commas
-    gap : longest gap over which values are interpolated
-    declination : angle added to the directions of the currents [degrees]
-    without : labels of sensors to ignore
-    moved : step common to the depths of all sensors; None if there is none, or if currents were
-        measured
+    moved : step common to the depths of all sensors, sought only if no currents were measured
     measured : the measurements
     notes : notes on the measurements, in sentences
     source : names and hashes of the source files
-
-    Raises
-    ------
-    InputError, UsageError
-        A file cannot be read, the mooring has no position, no sensor is left, or an option is
-        invalid.
     """
 
     mooring: Design
@@ -189,8 +153,7 @@ class RecoveredMooring:
             mooring.file.environment.maximum_speed,
         )  # fmt: skip
         for i, text in enumerate(self.currents):
-            path = split_label(text)[1]
-            read[i], more = matching.hung_currents(read[i], path, line, seabed)
+            read[i], more = matching.hung_currents(read[i], split_label(text)[1], line, seabed)
             notes += more
         notes += dict.fromkeys(f"{one.source}: {one.note}" for one in given if one.note)
         self.cards = [*(card for one in read for card in one.cards), *of_files.values()]
@@ -253,13 +216,7 @@ class RecoveredMooring:
             self.source["corrected"] = "corrected for: " + "; ".join(off)
 
     def _without(self, points: dict[int, int], labels: Sequence[str]) -> dict[int, int]:
-        """Return the points of the sensors that are not ignored.
-
-        Raises
-        ------
-        UsageError
-            A label of `without` or `hold_out` belongs to no sensor.
-        """
+        """Return the points of the sensors that are not ignored."""
         known = [labels[at] for at in points.values()]
         for option, given in (("--without", self.without), ("--hold-out", self.hidden)):
             for label in given:
@@ -281,13 +238,7 @@ class RecoveredMooring:
     ) -> dict[str, int]:
         """Estimate the common unknowns, correct the requested faults, and write the result.
 
-        Parameters
-        ----------
-        output, workers, progress, tell : as in `calm.batch.run.run_batch`
-
-        Returns
-        -------
-        The same value as `calm.batch.run.run_batch`.
+        Parameters and result are those of `calm.batch.run.run_batch`.
         """
         task = self._prepared(tell)
         if self.correct:
@@ -299,12 +250,10 @@ class RecoveredMooring:
             task = self._prepared(tell)
         self.task = task
         options = {
-            "fit": sorted(self.names),
-            "hold_out": sorted(self.hidden),
-            "without": sorted(self.without),
-            "correct": self.source.get("corrected", ""),
+            "fit": sorted(self.names), "hold_out": sorted(self.hidden),
+            "without": sorted(self.without), "correct": self.source.get("corrected", ""),
             "sensors": list(self.measured.label),
-        }
+        }  # fmt: skip
         text = resolved_input(self.mooring, self.measured.time, {"options": options})
         measured, arrays = InputHash(text), vars(self.measured).items()
         measured.add(one for name, one in arrays if name != "label")
@@ -312,8 +261,7 @@ class RecoveredMooring:
         layout = motion_layout(task, record)
         more = {**with_input(text), **measured.attributes()}
         layout = replace(layout, attributes={**layout.attributes, **more})
-        starts = range(0, len(self.measured.time), BLOCK)
-        extent: list[np.float32] = []
+        starts, extent = range(0, len(self.measured.time), BLOCK), list[np.float32]()
         solve = partial(solve_times, task, layout, extent)
         with closing(in_threads(solve, starts, workers)) as solved:
             return write_solved(
@@ -321,28 +269,17 @@ class RecoveredMooring:
             )
 
     def study(
-        self,
-        result: Dataset,
-        tell: Callable[[str], None] = lambda _: None,
+        self, result: Dataset, tell: Callable[[str], None] = lambda _: None,
         workers: int | None = None,
-    ) -> MotionEstimate:
-        """Compare a finished result with all measurements.
-
-        Parameters
-        ----------
-        result : result of `estimate`
-        tell : function that receives progress messages
-        workers : number of threads
-        """
+    ) -> MotionEstimate:  # fmt: skip
+        """Compare a finished result of `estimate` with all measurements."""
         faults = (*self._faults, *self.moved, *diagnosed(self.task))
         study = replace(judged(self.task, self.measured, result, faults), notes=tuple(self.notes))
-        if self.cross_validate:
-            each = cross_validated(
-                self.mooring, self.measured, self.names, self.hidden, tell, workers
-            )
-            held = {**study.held_out, **{one.label: one for one in each}}
-            study = replace(study, held_out=held)
-        return study
+        if not self.cross_validate:
+            return study
+        given = self.mooring, self.measured, self.names, self.hidden
+        held = {one.label: one for one in cross_validated(*given, tell, workers)}
+        return replace(study, held_out={**study.held_out, **held})
 
 
 def estimate_motion(
@@ -393,20 +330,11 @@ def estimate_motion(
     with TemporaryDirectory() as name:
         folder = Path(name)
         recovery = RecoveredMooring(
-            mooring,
-            as_files(pressures, folder, "pressures"),
-            as_files(currents, folder, "currents"),
-            match,
-            fit,
-            hold_out,
-            cross_validate,
-            correct,
-            None if sea_level is None else Path(sea_level),
-            ",".join(map(str, flags)),
-            GAP if gap is None else np.timedelta64(round(gap * 1e9), "ns"),
-            declination,
-            without,
-        )
+            mooring, as_files(pressures, folder, "pressures"),
+            as_files(currents, folder, "currents"), match, fit, hold_out, cross_validate, correct,
+            None if sea_level is None else Path(sea_level), ",".join(map(str, flags)),
+            GAP if gap is None else np.timedelta64(round(gap * 1e9), "ns"), declination, without,
+        )  # fmt: skip
         output = folder / "motion.nc"
         recovery.estimate(output, workers=workers)
         with open_result(output) as kept:

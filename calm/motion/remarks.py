@@ -15,67 +15,42 @@ from calm.physics.line import Floats, Integers
 Times = NDArray[np.datetime64]
 
 NO_TIME = np.datetime64("NaT", "ns")
-FALSE = 0.5
-"""Probability above which the current of a level is reported as false."""
+FALSE = 0.5  # probability above which the current of a level is reported as false
 ALL, LINE, CURRENTS = "all sensors", "the line", "all currents"
+# faults of the line and its currents, not of sensors; their sizes are logarithms
 OF_LINE = ("currents", "buoyancy", "length", "drag", "fouling")
-"""Faults of the line and its currents, not of sensors. Their sizes are logarithms."""
-LIKELY = 20.0
-"""Odds above which a fault is reported."""
-FAR_OFFSET = 2.5
-"""Offset of all sensors above which it is reported, in prior standard deviations."""
-FAR_DATUM = 10.0
-"""Offset of all sensors that is always reported [m]."""
+LIKELY = 20.0  # odds above which a fault is reported
+FAR_OFFSET = 2.5  # offset of all sensors above which it is reported, in prior standard deviations
+FAR_DATUM = 10.0  # offset of all sensors that is always reported [m]
+# error in length above which it is reported if currents were not measured, in prior deviations;
+# inferred currents absorb much of an error in length
 FAR_LENGTH = 5.0
-"""Error in length above which it is reported if currents were not measured, in prior deviations.
-
-Inferred currents absorb much of an error in length.
-"""
-FAR_FACTOR = 3.0
-"""Distance of a drag factor from 1, in prior deviations, above which it absorbs another error."""
-WORST = 0.3
-"""Share of the knockdown above which the error of the line is reported."""
+FAR_FACTOR = 3.0  # deviations of a drag factor from 1 above which it absorbs another error
+WORST = 0.3  # share of the knockdown above which the error of the line is reported
 
 
 @dataclass(frozen=True)
 class Fault:
-    """A fault of a sensor, a current meter or the line.
+    """A fault of a sensor, a current meter or the line."""
 
-    Attributes
-    ----------
-    label : label of the sensor; `ALL` for all sensors together
-    kind : `moved`, `clock`, `gain`, `offset`, `drift`, `slip`, `exchanged`, or one of `OF_LINE`
-    value, low, high : size of the fault, and the limits of its 95 % interval. The size of a `clock`
-        fault is the lag [h]; of a `gain`, the gain; of an `offset` or `moved`, the excess depth
-        [m]; of a `drift`, the excess depth at the end of the drift [m]; of a `slip`, the distance
-        moved down the line [m]; of `exchanged`, 0; of a fault in `OF_LINE`, the factor on the value
-        in the file or on the reading of the meter
-    odds : odds in favour of this fault against all alternatives, including no fault
-    since : start of a slip or drift; NaT for other faults
-    until : end of a drift; NaT for other faults
-    other : label of the second of two sensors whose labels are exchanged; otherwise empty
-    rival : alternative explanations that are nearly as likely; empty if there are none
-    corrected : whether the fault has been corrected
-    """
-
-    label: str
-    kind: str
+    label: str  # label of the sensor; `ALL` for all sensors together
+    kind: str  # `moved`, `clock`, `gain`, `offset`, `drift`, `slip`, or one of `OF_LINE`
+    # size of the fault, and its 95 % interval: the lag of a `clock` [h]; a `gain`; the excess depth
+    # of an `offset` or `moved`, or at the end of a `drift` [m]; the distance down the line of a
+    # `slip` [m]; for `OF_LINE`, the factor on the value in the file or on the reading of the meter
     value: float = 0.0
     low: float = 0.0
     high: float = 0.0
-    odds: float = 0.0
+    odds: float = 0.0  # odds in favour of this fault against all alternatives, including no fault
+    # start of a step, slip or drift, and end of a drift; otherwise NaT
     since: np.datetime64 = NO_TIME
     until: np.datetime64 = NO_TIME
-    other: str = ""
-    rival: str = ""
-    corrected: bool = False
+    rival: str = ""  # alternative explanations that are nearly as likely
+    corrected: bool = False  # whether the fault has been corrected
 
     @property
     def size(self) -> float:
-        """Deviation of `value` from the value that means no fault.
-
-        For a fault of the line, the logarithm of the factor `value` is returned.
-        """
+        """Deviation of `value` from no fault, as a logarithm for faults of the line."""
         if self.kind in OF_LINE:
             return float(np.log(self.value))
         return self.value - (self.kind == "gain")
@@ -90,7 +65,7 @@ class Fault:
 
     def same(self, other: Fault) -> bool:
         """True if the faults have the same kind and sensors, whatever their sizes."""
-        return (self.label, self.kind, self.other) == (other.label, other.kind, other.other)
+        return (self.label, self.kind) == (other.label, other.kind)
 
     def alike(self, other: Fault) -> bool:
         """True if the faults are the same, or if both concern the whole line or all currents."""
@@ -115,17 +90,15 @@ class Fault:
         """True if the odds are high enough to exclude other explanations."""
         return self.odds >= LIKELY
 
-    def sentence(self, rival: bool = True) -> str:
-        """Describe the fault in a sentence; if `rival` is true, append alternative explanations."""
+    def sentence(self) -> str:
+        """Describe the fault in a sentence, with its alternative explanations."""
         band = f"({self.low:+.2f} to {self.high:+.2f})"
         clock = "their clocks are" if self.label == ALL else "its clock is"
         way = "late" if self.value > 0.0 else "early"
         when, until = (np.datetime_as_string(one, "m") for one in (self.since, self.until))
         below = "below" if self.value > 0.0 else "above"
         share = f"{self.value:.2f} ({self.low:.2f} to {self.high:.2f})"
-        low, longer, high = sorted(
-            100.0 * abs(one - 1.0) for one in (self.value, self.low, self.high)
-        )
+        low, longer, high = sorted(100.0 * abs(f - 1.0) for f in (self.value, self.low, self.high))
         text = {
             "currents": f"they measure {share} times the true speed",
             "buoyancy": (
@@ -158,37 +131,19 @@ class Fault:
                 f"it is {abs(self.value):.1f} m {below} its nominal position from {when} on; its "
                 "clamp has probably slipped"
             ),
-            "exchanged": f"its label and the label of {self.other} appear to be exchanged",
         }[self.kind]
-        also = (
-            (f", or {self.rival}; the pressures cannot distinguish these")
-            if rival and self.rival
-            else ""
-        )
+        also = f", or {self.rival}; the pressures cannot distinguish these" * bool(self.rival)
         return f"{self.label}: {text}{also}"
 
 
 def false_current_times(names: Sequence[str], time: Times, doubt: Floats) -> dict[str, Times]:
-    """Return, for each level by name, the times at which its current is probably false.
-
-    Parameters
-    ----------
-    names : (k,) names of the levels
-    time : (n,) times
-    doubt : (n, k) probability that the current at a level is false
-    """
+    """Return, for each of k levels by name, the times (n,) at which its doubt (n, k) is large."""
     hit = doubt > FALSE
     return {name: time[hit[:, k]] for k, name in enumerate(names) if hit[:, k].any()}
 
 
 def current_remarks(false: Mapping[str, Times], count: int) -> list[str]:
-    """Return a remark for each level with false currents.
-
-    Parameters
-    ----------
-    false : result of `false_current_times`
-    count : number of times in the record
-    """
+    """Return a remark for each level with false currents, in a record of `count` times."""
     return [
         f"current at {name}: its direction or speed is probably wrong at {len(when)} of {count} "
         f"times, first at {np.datetime_as_string(when[0], 'm')}"
@@ -205,8 +160,7 @@ def no_drag(name: str, value: float) -> bool:
 def alone_remarks(common: Common) -> list[str]:
     """Return a remark if the line is inconsistent with the pressures even in inferred currents.
 
-    The pressures do not reveal the cause, because suitable currents bring most lines into agreement
-    with the pressures.
+    The cause is unknown, because suitable currents bring most lines into agreement.
     """
     length = common.factors.get("length", 1.0)
     far = abs(float(np.log(length))) > FAR_LENGTH * common_unknowns.FACTORS["length"]
@@ -221,13 +175,7 @@ def alone_remarks(common: Common) -> list[str]:
 
 
 def datum_remarks(common: Common, seabed: float) -> list[str]:
-    """Return a remark if all sensors share a large offset.
-
-    Parameters
-    ----------
-    common : common unknowns
-    seabed : depth of the water [m]
-    """
+    """Return a remark if all sensors share a large offset, compared with the water depth [m]."""
     if abs(common.datum) <= min(FAR_OFFSET * common_unknowns.DATUM * seabed, FAR_DATUM):
         return []
     return [
@@ -236,68 +184,40 @@ def datum_remarks(common: Common, seabed: float) -> list[str]:
     ]
 
 
-CALM = 0.1
-"""Share of times that count as calm, with the smallest knockdown."""
-BAND = 1.96
-"""Half-width of the 95 % interval of a normal distribution, in standard deviations."""
+CALM = 0.1  # share of times that count as calm, with the smallest knockdown
+BAND = 1.96  # half-width of the 95 % interval of a normal distribution, in standard deviations
 
 
 @dataclass(frozen=True)
 class Agreement:
-    """Agreement of computed and measured depths.
+    """Agreement of computed and measured depths."""
 
-    Attributes
-    ----------
-    count : number of times with both depths
-    bias : mean difference, computed minus measured depth [m]
-    rms : root mean square of this difference, after the mean difference at calm times has been
-        subtracted [m]
-    r : correlation of computed and measured depths
-    slope : regression slope of computed on measured depths
-    """
-
-    count: int
-    bias: float
-    rms: float
-    r: float
-    slope: float
+    count: int  # number of times with both depths
+    bias: float  # mean of computed minus measured depth [m]
+    rms: float  # root mean square of the `difference` [m]
+    r: float  # correlation of computed and measured depths
+    slope: float  # regression slope of computed on measured depths
 
 
 def calm_times(down: Floats, among: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return a mask of the 10 % of the times with the smallest knockdown, but of at least one time.
-
-    Parameters
-    ----------
-    down : (n,) knockdown [m]
-    among : (n,) mask of the times to choose from
-    """
-    known = among & np.isfinite(down)
-    chosen = np.zeros_like(known)
-    count = int(known.sum())
-    if count:
-        where = np.flatnonzero(known)
-        rank = np.argsort(down[where], kind="stable")
-        chosen[where[rank[: max(round(CALM * count), 1)]]] = True
+    """Return a mask of the 10 % of the times in `among` with the smallest knockdown (n,)."""
+    where = np.flatnonzero(among & np.isfinite(down))
+    rank = np.argsort(down[where], kind="stable")
+    chosen = np.zeros(len(down), bool)
+    chosen[where[rank[: max(round(CALM * len(where)), 1)]]] = True
     return chosen
 
 
 def difference(
     computed: Floats, measured: Floats, calm: NDArray[np.bool_], among: NDArray[np.bool_]
 ) -> Floats:
-    """Return computed minus measured depths (n,), relative to their mean at calm times [m].
+    """Return computed minus measured depths (n,), relative to their mean at the calm times [m].
 
-    The result is NaN at times that are not compared.
-
-    Parameters
-    ----------
-    computed, measured : (n,) depths [m]
-    calm : (n,) mask of the times with the smallest knockdown
-    among : (n,) mask of the times to compare
+    The result is NaN at times that are not in the mask `among`.
     """
     off = np.where(among, computed - measured, np.nan)
     at_rest = off[calm & np.isfinite(off)]
-    result: Floats = off - (at_rest.mean() if at_rest.size else np.nan)
-    return result
+    return np.asarray(off - (at_rest.mean() if at_rest.size else np.nan))
 
 
 def rms(off: Floats) -> float:
@@ -309,14 +229,7 @@ def rms(off: Floats) -> float:
 def agreement(
     computed: Floats, measured: Floats, calm: NDArray[np.bool_], among: NDArray[np.bool_]
 ) -> Agreement:
-    """Compare computed and measured depths at selected times.
-
-    Parameters
-    ----------
-    computed, measured : (n,) depths [m]
-    calm : (n,) mask of the times with the smallest knockdown
-    among : (n,) mask of the times to compare
-    """
+    """Compare (n,) computed and measured depths [m] at the times in the mask `among`."""
     both = among & np.isfinite(computed) & np.isfinite(measured)
     count, nan = int(both.sum()), float("nan")
     if count < 2:
@@ -334,10 +247,7 @@ def agreement(
 
 
 def coverage(off: Floats, deviation: Floats) -> float:
-    """Return the share of the differences that are within their 95 % interval.
-
-    The result is NaN if there are no differences.
-    """
+    """Return the share of the differences within their 95 % interval; NaN if there are none."""
     known = np.isfinite(off) & np.isfinite(deviation)
     inside = np.abs(off[known]) <= BAND * deviation[known]
     return float(inside.mean()) if inside.size else float("nan")
@@ -346,15 +256,9 @@ def coverage(off: Floats, deviation: Floats) -> float:
 def linear(depth: Floats, point: Integers, still: Floats, wanted: int) -> Floats:
     """Interpolate depths (n,) of a point [m] linearly between the nearest sensors.
 
-    Beyond the outermost sensors, depths are extrapolated from the two nearest sensors. With a
-    single sensor, all points are displaced equally.
-
-    Parameters
-    ----------
-    depth : (n, s) depths of the sensors [m]; a NaN gives NaN at that time
-    point : (s,) indices of the points of the sensors
-    still : (p,) depths in still water [m]
-    wanted : index of the point
+    The sensors at the points (s,) have depths (n, s); `still` are the depths (p,) of all points in
+    still water [m]. Beyond the outermost sensors, depths are extrapolated; with a single sensor,
+    all points are displaced equally.
     """
     from scipy.interpolate import make_interp_spline
 
@@ -367,14 +271,10 @@ def linear(depth: Floats, point: Integers, still: Floats, wanted: int) -> Floats
 
 
 def pchip(depth: Floats, point: Integers, still: Floats, wanted: int) -> Floats:
-    """Interpolate depths (n,) of a point [m] from the knockdown of the sensors, by PCHIP.
+    """Interpolate depths (n,) of a point [m] from the knockdown of the sensors, as in `linear`.
 
-    The method is that of Fritsch and Carlson (1980). The knockdown is interpolated over the height
-    in still water above the lowest point of the line, where the knockdown is 0.
-
-    Parameters
-    ----------
-    depth, point, still, wanted : as in `linear`
+    The method is PCHIP (Fritsch and Carlson 1980) over the height in still water above the lowest
+    point of the line, where the knockdown is 0.
     """
     from scipy.interpolate import PchipInterpolator
 
@@ -388,5 +288,4 @@ def pchip(depth: Floats, point: Integers, still: Floats, wanted: int) -> Floats:
     places = np.concatenate([[0.0], height[point][first]])
     values = np.concatenate([np.zeros((len(down), 1)), down], axis=1)
     between = PchipInterpolator(places, values, axis=1, extrapolate=True)(height[wanted])
-    result: Floats = np.where(known, still[wanted] + between, np.nan)
-    return result
+    return np.where(known, still[wanted] + between, np.nan)

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from calm.errors import InputError, Problem, UsageError
 from calm.motion.common_unknowns import FEWEST
+from calm.motion.remarks import rms
 from calm.physics.line import Floats
 from calm.records import cf_files, instrument_series, instrument_text
 from calm.records.attributes import words_of
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _NOT_MEASURED = re.compile(
-    r"\binferred\b|\binterpolated (from|between|using)\b|\bneighbou?r(s|ing)?\b|\bby calm\b"
+    r"\b(inferred|interpolated (from|between|using)|neighbou?r(s|ing)?|by calm)\b"
 )
 
 
@@ -41,20 +42,8 @@ def read_sensors(
     """Read the depths measured by the sensors of several files [m].
 
     Each file is given by its path. A file with a single sensor may be given as ``LABEL=PATH``.
-    Pressures are converted to depths by TEOS-10.
-
-    Parameters
-    ----------
-    flags : accepted quality flags, for files with flags
-    latitude : latitude of the mooring [degrees]
-    seabed : depth of the water [m], to convert nominal heights above the seabed
-
-    Raises
-    ------
-    InputError
-        A file cannot be read, or has no pressures with a unit.
-    UsageError
-        A label is given for a file of several sensors, or two sensors have the same label.
+    Pressures with an accepted flag are converted to depths by TEOS-10 at the latitude [degrees].
+    Nominal heights are above the seabed [m].
     """
     found: list[InstrumentSeries] = []
     for label, path in instrument_series.files_given(given):
@@ -72,9 +61,8 @@ def read_sensors(
                 )
             mine = [replace(mine[0], label=label)]
         found += mine
-    labels = [one.label for one in found if one.label]
-    twice = sorted({label for label in labels if labels.count(label) > 1})
-    if twice:
+    labels = sorted(one.label for one in found if one.label)
+    if twice := [one for one, next_one in pairwise(labels) if one == next_one]:
         raise UsageError(f"--pressures: two sensors are called `{twice[0]}`")
     return [_doubted(one) for one in found]
 
@@ -86,15 +74,11 @@ def _doubted(sensor: InstrumentSeries) -> InstrumentSeries:
 
 
 def depth_of(dbar: Floats, latitude: float) -> Floats:
-    """Convert pressures [dbar], relative to the atmosphere, to depths [m] by TEOS-10.
-
-    Infinite pressures give NaN.
-    """
+    """Convert pressures [dbar], relative to the atmosphere, to depths [m] by TEOS-10."""
     import gsw
 
     known = np.where(np.isfinite(dbar), dbar, np.nan)
-    depths: Floats = -np.asarray(gsw.z_from_p(known, latitude), np.float64)
-    return depths
+    return -np.asarray(gsw.z_from_p(known, latitude), np.float64)
 
 
 def _from_arrays(
@@ -132,11 +116,7 @@ def _find(dataset: xr.Dataset) -> tuple[str, bool]:
         return found[0], True
     for name in map(str, dataset.cf.standard_names.get("depth", [])):
         clock = find_times(dataset, name)
-        if (
-            clock is not None
-            and dataset[clock].dims
-            and set(dataset[clock].dims) <= set(dataset[name].dims)
-        ):
+        if clock is not None and set() < {*dataset[clock].dims} <= {*dataset[name].dims}:
             return name, False
     raise UnreadableError(
         "has no pressures: CALM looks for a variable with the standard name sea_water_pressure, "
@@ -147,89 +127,63 @@ def _find(dataset: xr.Dataset) -> tuple[str, bool]:
 def _from_csv(path: Path, latitude: float) -> list[InstrumentSeries]:
     """Read a table ``time,LABEL[dbar],…``, or with units of length instead of dbar."""
     table = read_time_columns(path, ("pressure", "length"), "LABEL[dbar]")
-    scales = {"pressure": (1.0 / PASCALS_PER_DBAR, "dbar"), "length": (1.0, "m")}
-    summaries = {}
+    summaries, depths = {}, []
     for label, dimension, values in zip(table.names, table.dimensions, table.values.T, strict=True):
-        factor, unit = scales[dimension]
-        summaries[label] = VariableSummary.of(label, unit, values * factor)
+        pressure = dimension == "pressure"
+        read = values * (1.0 / PASCALS_PER_DBAR) if pressure else values
+        summaries[label] = VariableSummary.of(label, "dbar" if pressure else "m", read)
+        depths.append(depth_of(values / PASCALS_PER_DBAR, latitude) if pressure else values)
     card = ReadCard(path.name, {}, summaries, len(table.names), table.time)
     return [
-        InstrumentSeries(
-            label,
-            "",
-            float("nan"),
-            path.name,
-            table.time,
-            depth_of(values / PASCALS_PER_DBAR, latitude) if dimension == "pressure" else values,
-            card=card,
-        )
-        for label, dimension, values in zip(
-            table.names, table.dimensions, table.values.T, strict=True
-        )
+        InstrumentSeries(label, "", float("nan"), path.name, table.time, depth, card=card)
+        for label, depth in zip(table.names, depths, strict=True)
     ]
 
 
 def parse_flags(text: str) -> frozenset[int]:
-    """Parse a list of flags such as ``1,2``.
-
-    Raises
-    ------
-    UsageError
-        The text is not a list of flags from 0 to 8, or includes 8, the flag of interpolated values.
-    """
+    """Parse a list of flags such as ``1,2``; 8, the flag of interpolated values, is rejected."""
     try:
         flags = frozenset(int(part) for part in text.split(","))
     except ValueError:
         raise UsageError(f"--flags: `{text[:40]}` is not a list of flags; write 1,2") from None
     if instrument_series.INTERPOLATED in flags:
         raise UsageError("--flags: 8 marks interpolated values, which are not measurements")
-    if not flags <= set(range(MISSING)):
+    if not flags <= {*range(MISSING)}:
         raise UsageError(f"--flags: `{text[:40]}`: flags must be from 0 to 8")
     return flags
 
 
-FURTHEST = 20.0
-"""Maximum distance of a sea-surface height from the median [m]: more than twice any real tide."""
+FURTHEST = 20.0  # most distance of a sea-surface height from the median [m]: twice any real tide
 
 _STANDARD = (
-    "sea_surface_height_above_mean_sea_level",
-    "sea_surface_height_above_geoid",
-    "sea_surface_height_above_geopotential_datum",
+    *(f"sea_surface_height_above_{of}" for of in ("mean_sea_level", "geoid", "geopotential_datum")),
     "tidal_sea_surface_height_above_mean_sea_level",
     "water_surface_height_above_reference_datum",
 )
 
 
 def read_sea_level(path: Path) -> tuple[NDArray[np.datetime64], Floats]:
-    """Read a series of sea-surface heights above a datum; return increasing times and heights [m].
-
-    Raises
-    ------
-    InputError
-        The file is unreadable, has no height with a unit, or has an impossible height.
-    """
+    """Read increasing times, and heights of the sea surface above a datum [m]."""
     if path.is_file() and not cf_files.holds_arrays(path):
         table = read_time_columns(path, ("length",), "level[m]")
         if len(table.names) != 1:
-            message = "has several columns; only one is allowed: `time,level[m]`"
-            raise InputError([Problem(str(path), 1, 1, message)])
-        _refuse_far(path, table.time, table.values[:, 0])
-        return table.time, table.values[:, 0]
-    with cf_files.opened(path) as dataset:
-        names = instrument_series.named(dataset, _STANDARD, ())
-        if not names:
-            raise UnreadableError("has no sea-surface height")
-        found = instrument_series.readings(dataset, names, frozenset(range(MISSING)))
-        if found.along is not None:
-            raise UnreadableError(
-                f"`{names[0]}` has values at several places (dimension `{found.along}`)"
+            message = (
+                "has several data columns; only one is allowed besides the time, e.g. "
+                "`time,level[m]`"
             )
-        level = found.values[0][:, 0] * factor_of(dataset[names[0]], "length")
-        _refuse_far(path, found.time, level)
-        return found.time, level
-
-
-def _refuse_far(path: Path, time: NDArray[np.datetime64], level: Floats) -> None:
+            raise InputError([Problem(str(path), 1, 1, message)])
+        time, level = table.time, table.values[:, 0]
+    else:
+        with cf_files.opened(path) as dataset:
+            names = instrument_series.named(dataset, _STANDARD, ())
+            if not names:
+                raise UnreadableError("has no sea-surface height")
+            found = instrument_series.readings(dataset, names, frozenset(range(MISSING)))
+            if found.along is not None:
+                raise UnreadableError(
+                    f"`{names[0]}` has values at several places (dimension `{found.along}`)"
+                )
+            time, level = found.time, found.values[0][:, 0] * factor_of(dataset[names[0]], "length")
     known = level[np.isfinite(level)]
     far = np.abs(level - (np.median(known) if known.size else 0.0)) > FURTHEST
     if far.any():
@@ -239,23 +193,15 @@ def _refuse_far(path: Path, time: NDArray[np.datetime64], level: Floats) -> None
             f"than {FURTHEST:g} m from its median; leave missing values blank"
         )
         raise InputError([Problem(str(path), 0, 0, message)])
+    return time, level
 
 
-CONSTANT = 1e-6
-"""Range of depths up to which a sensor counts as constant [m]."""
-MISPLACED = 20.0
-"""Tolerance for the shallowest depth of a sensor against its place in still water [m].
-
-A factor of two is also accepted.
-"""
-UNITS = {"psi for dbar?": 1.45038, "dbar for psi?": 0.68948}
-"""Ratio of pressures with a confused unit to the true pressures."""
-ALIKE, APART = 0.03, 3.0
-"""Relative tolerance of that ratio, doubled for several sensors, and least distance between
-exchanged sensors [m].
-"""
-BELOW = 1.1
-"""Readings are too deep if they exceed the seabed by this factor and by `MISPLACED`."""
+CONSTANT = 1e-6  # range of depths up to which a sensor counts as constant [m]
+MISPLACED = 20.0  # tolerance for the shallowest depth against still water [m]; or a factor of two
+UNITS = {"psi for dbar?": 1.45038, "dbar for psi?": 0.68948}  # ratios of such readings to true ones
+ALIKE = 0.03  # relative tolerance of that ratio, doubled for several sensors
+APART = 3.0  # least distance between exchanged sensors [m]
+BELOW = 1.1  # readings are too deep if they exceed the seabed by this factor and by `MISPLACED`
 
 
 def plausible(
@@ -263,21 +209,12 @@ def plausible(
 ) -> tuple[InstrumentSeries, list[str]]:
     """Remove implausible readings from a sensor, and return notes about the removal.
 
-    A reading is implausible if it is far shallower than the sensor in still water (taken on deck,
-    or a fill value), if it is far below the seabed, or if the sensor is stuck. Only the first of
-    several readings at the same time is kept. Depths are corrected if the readings on deck show
-    that the pressures are absolute. If most readings are too shallow or too deep, no reading is
-    removed, because the sensor itself is wrong; `unusable` then reports the sensor.
-
-    Parameters
-    ----------
-    place : depth of the sensor in still water [m]
-    seabed : depth of the water [m]
-
-    Raises
-    ------
-    UsageError
-        A third or more of the times of the sensor occur twice with different depths.
+    A reading is implausible if it is far shallower than the sensor in still water, at the depth
+    `place` [m] (taken on deck, or a fill value), if it is far below the seabed [m], or if the
+    sensor is stuck. Only the first of several readings at the same time is kept. Depths are
+    corrected if the readings on deck show that the pressures are absolute. If most readings are too
+    shallow or too deep, they are kept, because the sensor itself is wrong; `unusable` then reports
+    the sensor.
     """
     notes = []
     again = np.zeros(len(sensor.time), bool)
@@ -325,8 +262,7 @@ def plausible(
     return sensor, notes
 
 
-STUCK, FEWEST_STUCK = 0.1, 24
-"""Share of a series and number of readings above which equal values mark a stuck sensor."""
+STUCK, FEWEST_STUCK = 0.1, 24  # share and number of equal readings that mark a stuck sensor
 
 
 def _stuck(value: Floats) -> NDArray[np.bool_]:
@@ -343,22 +279,16 @@ def _stuck(value: Floats) -> NDArray[np.bool_]:
     return same & lively
 
 
-AIR = instrument_text.AIR / 1.0082
-"""Excess depth from the pressure of the air [m], at 1.0082 dbar/m of sea water."""
-NEAR_AIR, ON_DECK = 2.5, 0.6
-"""Tolerances for that excess: in calm water, and for a sensor on deck [m]."""
+AIR = instrument_text.AIR / 1.0082  # excess depth [m], at 1.0082 dbar/m of sea water
+NEAR_AIR, ON_DECK = 2.5, 0.6  # tolerances for that excess: in calm water, and on deck [m]
 
 
 def air_notes(depth: Floats, place: Floats) -> list[str]:
     """Return a remark if all depths seem to include atmospheric pressure.
 
-    In calm water, all depths then exceed the depths in still water by the equivalent of atmospheric
-    pressure; currents increase this excess. The sensor with the smallest excess decides.
-
-    Parameters
-    ----------
-    depth : (n, s) measured depths [m]
-    place : (s,) depths of the sensors in still water [m]
+    In calm water, the (n, s) measured depths then exceed the (s,) depths in still water [m] by the
+    equivalent of atmospheric pressure; currents increase this excess. The sensor with the smallest
+    excess decides.
     """
     off = np.array([_least(column) for column in depth.T]) - place
     alike = float(np.min(off[np.isfinite(off)], initial=np.inf))
@@ -372,20 +302,44 @@ def air_notes(depth: Floats, place: Floats) -> list[str]:
     ]
 
 
+# Limits for another unit of all readings, which random errors of 1 to 20 m for each sensor, with or
+# without a common error, pass in at most 0.3 % of trials: share of the errors that may remain, of
+# those as read and of those after removal of their mean; and least error as read [m]
+EXPLAINED, BEYOND, LEAST = 0.05, 0.2, 1.0
+
+
+def metre_notes(measured: Floats, expected: Floats, latitude: float) -> list[str]:
+    """Return a remark if depths in metres seem to be recorded as pressures in dbar, or the reverse.
+
+    The (s,) measured depths are then about 1 % less or more than the expected depths [m], which do
+    not depend on these readings. The expected depths must agree as they are, because a common error
+    and a wrong length of the line together would have the same effect.
+    """
+    import gsw
+
+    off = measured - expected
+    if len(off) < 2 or not rms(off) > LEAST:
+        return []
+    for true, way, cause in (
+        (np.asarray(gsw.p_from_z(-measured, latitude)), "low", "depths in metres recorded as dbar"),
+        (depth_of(measured, latitude), "high", "pressures in dbar recorded as depths in metres"),
+    ):
+        left = rms(true - expected)
+        if left <= min(EXPLAINED * rms(off), BEYOND * float(off.std())):
+            share = 100.0 * float(np.abs(measured / true - 1.0).mean())
+            return [
+                f"all sensors: their readings are {share:.1f} % {way}, as {cause} would be; they "
+                "are used as they are"
+            ]
+    return []
+
+
 def unusable(labels: Sequence[str], depth: Floats, place: Floats) -> dict[str, str]:
     """Return the labels of unusable sensors, each with the reason.
 
-    Parameters
-    ----------
-    labels : (s,) labels of the sensors
-    depth : (n, s) measured depths [m]
-    place : (s,) depths of the sensors in still water [m]
-
-    Raises
-    ------
-    UsageError
-        Two labels are exchanged, or half or more of the sensors are far from their places on the
-        line. A unit or the line is then wrong.
+    The sensors have (n, s) measured depths, and (s,) depths in still water [m]. A UsageError is
+    raised if two labels are exchanged, or if half or more of the sensors are far from their places
+    on the line, because a unit or the line is then wrong.
     """
     reasons: dict[str, str] = {}
     far_off: dict[str, str] = {}
@@ -394,14 +348,12 @@ def unusable(labels: Sequence[str], depth: Floats, place: Floats) -> dict[str, s
     units = _other_unit(least, place)
     for j, label in enumerate(labels):
         known = depth[:, j][np.isfinite(depth[:, j])]
+        far = abs(least[j] - place[j]) > MISPLACED and not 0.5 < least[j] / place[j] < 2.0
         if not known.size:
             reasons[label] = "has no good pressure at any time step of the currents"
-            continue
-        if known.size > 2 and np.ptp(known) <= CONSTANT:
+        elif known.size > 2 and np.ptp(known) <= CONSTANT:
             reasons[label] = f"is constant at {known[0]:.1f} m and was excluded"
-            continue
-        far = abs(least[j] - place[j]) > MISPLACED and not 0.5 < least[j] / place[j] < 2.0
-        if (far or units) and not any(f"`{label}`" in one for one in exchanged):
+        elif (far or units) and not any(f"`{label}`" in one for one in exchanged):
             doubted = "sign" if least[j] < -MISPLACED else f"unit ({units or 'bar, kPa?'})"
             far_off[label] = (
                 f"is at {least[j]:.1f} m at its shallowest, but at {place[j]:.1f} m in the mooring "

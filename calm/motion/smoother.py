@@ -16,38 +16,24 @@ import numpy as np
 
 from calm.physics.line import Floats
 
-BLOCK = 256
-"""Number of times per stored block."""
+BLOCK = 256  # number of times per stored block
 
 
 @dataclass(frozen=True)
 class StateSpace:
-    """A linear state-space model of n times, q states and m readings.
+    """A linear state-space model of n times, q states and m readings."""
 
-    Attributes
-    ----------
-    fade : (n, q) factor by which each state decays since the previous time; the first row is unused
-    steady : (q, q) stationary covariance of the states that decay
-    stepped : (n, q) variance added to each persistent state since the previous time
-    first : (q, q) covariance of the states at the first time; their prior mean is 0 at all times
-    seen : (n, m, q) derivatives of the readings with respect to the states
-    read : (n, m) readings; NaN if missing
-    noise : (n, m) variances of the errors of the readings
-    """
-
+    # (n, q) factor by which each state decays since the previous time; the first is unused
     fade: Floats
-    steady: Floats
-    stepped: Floats
-    first: Floats
-    seen: Floats
-    read: Floats
-    noise: Floats
+    steady: Floats  # (q, q) stationary covariance of the states that decay
+    stepped: Floats  # (n, q) variance added to each persistent state since the previous time
+    first: Floats  # (q, q) covariance of the states at the first time; their prior mean is always 0
+    seen: Floats  # (n, m, q) derivatives of the readings with respect to the states
+    read: Floats  # (n, m) readings; NaN if missing
+    noise: Floats  # (n, m) variances of the errors of the readings
 
     def added(self, time: int) -> Floats:
-        """Return the (q, q) covariance of the state noise between the previous time and this time.
-
-        `time` is the index of this time.
-        """
+        """Return the (q, q) covariance of the state noise since the previous time."""
         fade = self.fade[time]
         result = self.steady * (1.0 - np.outer(fade, fade))
         result.flat[:: len(result) + 1] += self.stepped[time]
@@ -68,20 +54,13 @@ class _Filtered:
 
 @dataclass(frozen=True)
 class Smoothed:
-    """Smoothed states at b successive times, given all readings of the record.
-
-    Attributes
-    ----------
-    times : slice of the times
-    mean, covariance : (b, q) mean and (b, q, q) covariance of the states
-    pull, hold : vector r (b, q) and matrix N (b, q, q) of Durbin and Koopman. Let Q be the prior
-        covariance of the state noise before each time. Given all readings, this noise has the mean
-        Q r and the covariance Q - Q N Q
-    """
+    """Smoothed states at b successive times, given all readings of the record."""
 
     times: slice
-    mean: Floats
-    covariance: Floats
+    mean: Floats  # (b, q) mean of the states
+    covariance: Floats  # (b, q, q) covariance of the states
+    # vector r (b, q) and matrix N (b, q, q) of Durbin and Koopman: the state noise before each
+    # time, of prior covariance Q, has the mean Q r and the covariance Q - Q N Q
     pull: Floats
     hold: Floats
 

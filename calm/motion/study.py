@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.case import Design
-from calm.errors import UsageError, unknown
+from calm.errors import UsageError
 from calm.motion.correction import Task, estimate_in_memory
 from calm.motion.diagnosis import diagnosed
 from calm.motion.line_response import Forward, instruments_of, labels_of
@@ -35,6 +35,7 @@ from calm.motion.remarks import (
     pchip,
     rms,
 )
+from calm.motion.sensors import metre_notes
 from calm.motion.suspects import meter_remarks
 from calm.motion.unknown_currents import learn_currents, with_knots
 from calm.physics.line import Floats
@@ -45,26 +46,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class HeldOut:
-    """A withheld sensor, and the errors of the depths estimated without this sensor.
-
-    Attributes
-    ----------
-    count : number of times with good pressures of this sensor and of all sensors in use
-    bias : mean difference, estimated minus measured depth [m]
-    rms : root mean square of this difference, after the mean difference at calm times has been
-        subtracted [m]
-    linear_rms, pchip_rms : as `rms`, but for depths interpolated between the sensors in use, with
-        the functions `linear` and `pchip` of `calm.motion.remarks` [m]
-    coverage : share of the differences within the 95 % interval of the estimate
-    """
+    """A withheld sensor, and the errors of the depths estimated without this sensor."""
 
     label: str
-    count: int
-    bias: float
-    rms: float
-    linear_rms: float
-    pchip_rms: float
-    coverage: float
+    count: int  # number of times with good pressures of this sensor and of all sensors in use
+    bias: float  # mean of estimated minus measured depth [m]
+    rms: float  # root mean square of the `difference` of estimated and measured depth [m]
+    linear_rms: float  # as `rms`, for depths interpolated by `linear` [m]
+    pchip_rms: float  # as `rms`, for depths interpolated by `pchip` [m]
+    coverage: float  # share of the differences within the 95 % interval of the estimate
 
 
 @dataclass(frozen=True, repr=False)
@@ -109,11 +99,8 @@ class MotionEstimate:
     def plot(self, ax: Any = None) -> Any:
         """Draw the depths of the sensors over time, with their 95 % bands, and return the axes.
 
-        Measured depths are drawn as dots. Requires matplotlib.
-
-        Parameters
-        ----------
-        ax : axes of matplotlib; by default, new axes are created
+        Measured depths are drawn as dots. `ax` are axes of matplotlib; by default, new axes are
+        created.
         """
         if ax is None:
             from matplotlib.figure import Figure
@@ -123,10 +110,8 @@ class MotionEstimate:
         for j, label in enumerate(used.label):
             depth, spread = depths_at(self.dataset, int(used.point[j]))
             (line,) = ax.plot(time, depth, label=label, linewidth=1.0)
-            colour = line.get_color()
-            ax.fill_between(
-                time, depth - BAND * spread, depth + BAND * spread, color=colour, alpha=0.25
-            )
+            colour, half = line.get_color(), BAND * spread
+            ax.fill_between(time, depth - half, depth + half, color=colour, alpha=0.25)
             ax.plot(time, used.depth[:, j], ".", color=colour, markersize=2.0)
         ax.set_ylabel("depth [m]")
         if not ax.yaxis_inverted():
@@ -162,24 +147,9 @@ def prepare(
 ) -> Task:
     """Estimate the common unknowns of the record, without the withheld sensors.
 
-    Parameters
-    ----------
-    mooring : mooring as in its file
-    measured : measurements, including the withheld sensors
-    names : names of the factors to estimate
-    hidden : labels of the withheld sensors
-    tell : function that receives progress messages
-
-    Raises
-    ------
-    UsageError
-        A withheld sensor does not exist, no sensor is left, or the line has no equilibrium that
-        fits the pressures.
+    The measurements include the withheld sensors, `hidden`; `names` are the factors to estimate.
+    Progress messages are passed to `tell`.
     """
-    for label in hidden:
-        if label not in measured.label:
-            what = f"--hold-out: no sensor is called `{label}`"
-            raise UsageError(unknown(what, label, measured.label))
     used = without(measured, hidden)
     if not used.label:
         raise UsageError("--hold-out: at least one sensor must remain for the estimate")
@@ -191,10 +161,8 @@ def prepare(
         slips = [one for one in found if one.kind == "slip" and one.certain]
         if slips:
             begin = np.searchsorted(used.time, [one.since for one in slips]).tolist()
-            sensors = [used.label.index(one.label) for one in slips]
-            smoother.solve(
-                [(j, t, one.value) for j, t, one in zip(sensors, begin, slips, strict=True)]
-            )
+            pairs = zip(begin, slips, strict=True)
+            smoother.solve([(used.label.index(one.label), t, one.value) for t, one in pairs])
             return Task(mooring, used, smoother.common(), smoother)
         return replace(task, faults=found)
     used = with_knots(used, mooring)
@@ -213,28 +181,24 @@ def intervals(task: Task) -> dict[str, tuple[float, float, float]]:
 def judged(
     task: Task, measured: MooringMeasurements, result: Dataset, diagnosis: Sequence[Fault] = ()
 ) -> MotionEstimate:
-    """Compare a finished result with all measurements.
-
-    Parameters
-    ----------
-    task : input of the estimate
-    measured : measurements, including the withheld sensors
-    result : dataset of `calm motion`
-    diagnosis : diagnosed faults
-    """
+    """Compare a finished result of `calm motion` with all measurements and the withheld sensors."""
     used = task.measured
     alone = task.common.inferred
     plain = None if alone else np.asarray(result["plain_depth"].values, np.float64)
     down = knockdown(used)
     every = np.isfinite(down)
-    fit_of, plain_of = {}, {}
+    still = Forward(task.mooring, {}).still
+    fit_of, plain_of, at_rest = {}, {}, list[Floats]()
     for j, label in enumerate(used.label):
         calm = calm_times(down, every & np.isfinite(used.depth[:, j]))
         depth, _ = depths_at(result, int(used.point[j]))
         fit_of[label] = agreement(depth, used.depth[:, j], calm, every)
         if plain is not None:
             plain_of[label] = agreement(plain[:, j], used.depth[:, j], calm, every)
-    still = Forward(task.mooring, {}).still
+        expected = np.full(len(down), still[used.point[j]]) if plain is None else plain[:, j]
+        both = np.stack([used.depth[:, j], expected])[:, calm & np.isfinite(expected)]
+        if both.size:
+            at_rest.append(both.mean(axis=1))
     hidden = [label for label in measured.label if label not in used.label]
     held = {}
     for label in hidden:
@@ -252,6 +216,10 @@ def judged(
         remarks += [*current_remarks(false, len(used.time)), *meter_remarks(used, names)]
     if not any(one.label == ALL and one.kind == "gain" for one in diagnosis):
         remarks += datum_remarks(task.common, float(task.mooring.water.depth))
+    position = task.mooring.file.position
+    if position is not None and at_rest:
+        mean, reference = np.transpose(at_rest)
+        remarks += metre_notes(mean, reference, position.latitude)
     of_line = any(one.kind in OF_LINE for one in diagnosis)
     fits = not (of_line or unfit)
     return MotionEstimate(
@@ -261,10 +229,7 @@ def judged(
 
 
 def knockdown(used: MooringMeasurements) -> Floats:
-    """Return at each time the knockdown (n,) of the highest sensor that has a pressure [m].
-
-    The knockdown is the depth of the sensor minus its minimum depth.
-    """
+    """Return the depth (n,) of the highest sensor with a pressure, minus its least depth [m]."""
     down = np.full(len(used.time), np.nan)
     for j in range(len(used.label)):
         depth = used.depth[:, j]
@@ -283,15 +248,8 @@ def judge_hidden(
 ) -> HeldOut:
     """Compare the depths of a withheld sensor with the estimate and with two interpolations.
 
-    The depths are interpolated between the sensors in use.
-
-    Parameters
-    ----------
-    measured : measurements of all sensors
-    used : measurements of the sensors in use
-    label : label of the withheld sensor
-    depth, spread : (n,) estimated depth of the sensor, and its standard deviation [m]
-    still : (p,) depths in still water [m]
+    The sensor has an estimated depth (n,), and its standard deviation [m]; `still` are the depths
+    of all points in still water [m].
     """
     column = measured.label.index(label)
     own = measured.depth[:, column]
@@ -305,13 +263,7 @@ def judge_hidden(
 
 
 def several(measured: MooringMeasurements, hidden: Sequence[str]) -> list[str]:
-    """Return the labels of the sensors that a cross-validation withholds in turn.
-
-    Raises
-    ------
-    UsageError
-        Only one sensor is available.
-    """
+    """Return the labels of the sensors that a cross-validation withholds in turn, at least two."""
     rest = [label for label in measured.label if label not in hidden]
     if len(rest) < 2:
         raise UsageError("--cross-validate: at least two sensors are needed")
@@ -326,20 +278,9 @@ def cross_validated(
     tell: Callable[[str], None],
     workers: int | None = None,
 ) -> list[HeldOut]:
-    """Estimate the depth of each sensor from the other sensors, and return the errors.
+    """Return the errors of the depth of each sensor, estimated without this sensor.
 
     Each sensor is withheld in turn, in addition to the sensors in `hidden`.
-
-    Parameters
-    ----------
-    mooring, measured, names, hidden : as in `prepare`
-    tell : function that receives progress messages
-    workers : number of threads
-
-    Raises
-    ------
-    UsageError
-        Only one sensor is available.
     """
     still = Forward(mooring, {}).still
     held = []
@@ -354,25 +295,15 @@ def cross_validated(
 
 @dataclass(frozen=True)
 class SensorSeries:
-    """Depths of one sensor or instrument over time.
-
-    Attributes
-    ----------
-    hidden : True if the estimate uses no pressure of this sensor, because the sensor was withheld
-        or has no pressure
-    time : (n,) times
-    measured : (n,) measured depths [m]; NaN if not measured
-    estimated, spread : (n,) estimated depths and their standard deviations [m]
-    plain : (n,) depths computed from the currents alone [m]; None if `hidden`, or if currents were
-        not measured
-    """
+    """Depths of one sensor or instrument over time."""
 
     label: str
-    hidden: bool
-    time: NDArray[np.datetime64]
-    measured: Floats
-    estimated: Floats
-    spread: Floats
+    hidden: bool  # True if the estimate uses no pressure of this sensor
+    time: NDArray[np.datetime64]  # (n,) times
+    measured: Floats  # (n,) measured depths [m]; NaN if not measured
+    estimated: Floats  # (n,) estimated depths [m]
+    spread: Floats  # (n,) standard deviations of the estimated depths [m]
+    # (n,) depths computed from the measured currents alone [m]; otherwise None
     plain: Floats | None
 
 
@@ -386,18 +317,10 @@ def depths_at(result: Dataset, point: int) -> tuple[Floats, Floats]:
 
 
 def series_of(study: MotionEstimate, measured: MooringMeasurements) -> list[SensorSeries]:
-    """Return the depths of all sensors from the top down, then those of the other instruments.
-
-    Parameters
-    ----------
-    study : the estimate
-    measured : measurements, including those of the withheld sensors
-    """
+    """Return the depths of all sensors from the top down, then those of the other instruments."""
     mooring, used, result = study.task.mooring, study.task.measured.label, study.dataset
-    labels, columns = (
-        labels_of(mooring),
-        dict(zip(measured.point.tolist(), measured.depth.T, strict=True)),
-    )
+    labels = labels_of(mooring)
+    columns = dict(zip(measured.point.tolist(), measured.depth.T, strict=True))
     nothing, found = np.full(len(measured.time), np.nan), []
     for point in dict.fromkeys([*columns, *instruments_of(mooring)]):
         label, plain = labels[point], None

@@ -24,46 +24,30 @@ from calm.motion.measurements import MooringMeasurements, exclude_readings
 from calm.motion.remarks import ALL, BAND, CURRENTS, LINE, Fault
 from calm.physics.line import Floats
 
+# prior standard deviation of the logarithm of each fault, and its prior probability
 CAUSES: Mapping[str, tuple[float, float]] = {
-    "currents": (0.3, 0.02),
-    "buoyancy": (0.3, 0.02),
-    "length": (0.02, 0.02),
-    "drag": (0.3, 0.02),
+    "currents": (0.3, 0.02), "buoyancy": (0.3, 0.02), "length": (0.02, 0.02), "drag": (0.3, 0.02),
     "fouling": (0.5, 0.02),
-}
-"""Prior standard deviation of the logarithm of each fault, and its prior probability."""
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
 class Suspect:
-    """A possible fault, and its effect on the readings of s sensors at n times.
-
-    Attributes
-    ----------
-    fault : the fault
-    column : (n, s) change in the measured depths per unit of the size of the fault
-    wide : prior standard deviation of the size; 0 if the size is fixed
-    log : logarithm of the prior probability of the fault
-    shift : (n, s) change in the measured depths by a fault of fixed size [m]; 0 if the size is
-        fitted
-    """
+    """A possible fault, and its effect on the readings of s sensors at n times."""
 
     fault: Fault
-    column: Floats
-    wide: float
-    log: float
+    column: Floats  # (n, s) change in the measured depths per unit of the size of the fault
+    wide: float  # prior standard deviation of the size; 0 if the size is fixed
+    log: float  # logarithm of the prior probability of the fault
+    # (n, s) change in the measured depths by a fault of fixed size [m]; otherwise 0
     shift: Floats | float = 0.0
 
 
 def line_suspects(task: Task, read: ReadCurrents, at: Linear, share: Floats) -> Iterator[Suspect]:
     """Yield possible faults of the line and its measured currents.
 
-    Parameters
-    ----------
-    read : currents at several times
-    at : depths of the line in these currents, and derivatives of the depths with respect to the
-        logarithm of a factor on all speeds
-    share : elapsed share of the record at the times with an equilibrium
+    The line is given in currents at several times, with slopes by the logarithm of a factor on all
+    speeds; `share` is the elapsed share of the record at the times with an equilibrium.
     """
     factors = task.common.factors
     good = np.isfinite(at.depth).all(axis=1)
@@ -88,23 +72,20 @@ def line_suspects(task: Task, read: ReadCurrents, at: Linear, share: Floats) -> 
     yield suspect(CURRENTS, "currents", -at.slope[:, :, 0])
 
 
-GOOD, FEWEST_TIMES = 2, 20
-"""Highest quality flag of a usable current, and least number of times that two meters share."""
-COHERENT, TURNED, UNLIKE = 0.8, 10.0, 5.0
-"""Correlation of a level with its neighbours, and the rotation [degrees] or speed ratio, above
-which a meter is reported.
-"""
+GOOD, FEWEST_TIMES = 2, 20  # highest quality flag of a usable current, and least shared times
+COHERENT = 0.8  # least correlation of a level with its neighbours
+TURNED, UNLIKE = 10.0, 5.0  # rotation [degrees] and speed ratio above which a meter is reported
 
 
 def meter_remarks(measured: MooringMeasurements, names: Sequence[str]) -> list[str]:
     """Return a remark on each current meter with rotated or mirrored readings, or a wrong unit.
 
-    A meter is reported if it disagrees with its two nearest meters, and these two meters agree with
-    each other. Agreement is measured by the complex correlation r of the currents over the whole
-    record. The phase of r is the mean angle between the two currents (Kundu 1976, J. Phys.
-    Oceanogr. 6, 238-242). For n independent times, the phase has the standard deviation
-    sqrt((1 - r²) / (2 r² n)). A correlation with the mirrored current indicates that the east and
-    north components are exchanged.
+    A meter is reported if it disagrees with its two nearest meters, and these two agree with each
+    other. Agreement is measured by the complex correlation r of the currents over the whole record.
+    The phase of r is the mean angle between the two currents (Kundu 1976, J. Phys. Oceanogr. 6,
+    238-242). For n independent times, it has the standard deviation sqrt((1 - r²) / (2 r² n)). A
+    correlation with the mirrored current indicates that the east and north components are
+    exchanged.
     """
     flow = np.where(measured.flag <= GOOD, measured.u + 1j * measured.v, np.nan)
 
@@ -155,8 +136,7 @@ def meter_remarks(measured: MooringMeasurements, names: Sequence[str]) -> list[s
     return remarks
 
 
-STRETCHED, AMISS = 1.25, 20.0
-"""Maximum ratio of stretched to unstretched length, and tolerance for depths [m]."""
+STRETCHED, AMISS = 1.25, 20.0  # most ratio of stretched to unstretched length, and tolerance [m]
 
 
 def distances_of(mooring: Design) -> Floats:
@@ -176,15 +156,10 @@ def torn(
 ) -> tuple[MooringMeasurements, list[str]]:
     """Remove readings that differ in depth by more than the length of line between the sensors.
 
-    Of two such readings, the reading that is farther from the median of its sensor is removed. If
-    half or more of the readings of a sensor would be removed, all its readings are kept. Return the
-    measurements, and notes on the removal.
-
-    Parameters
-    ----------
-    measured : the measurements
-    distance : (p,) distances of the points from the top, along the line [m]
-    hidden : labels of sensors that are neither tested nor used to test others
+    Of two such readings, the one that is farther from the median of its sensor is removed. If half
+    or more of the readings of a sensor would be removed, all are kept. Distances (p,) of the points
+    are from the top, along the line [m]. The sensors `hidden` are neither tested nor used to test
+    others. Also return notes on the removal.
     """
     depth, place = measured.depth, distance[measured.point]
     used = [i for i, label in enumerate(measured.label) if label not in hidden]
@@ -204,23 +179,17 @@ def torn(
     ]
 
 
-EITHER_SIDE, CLEAR, LEAST_STEP = 4, 8.0, 3.0
-"""Number of times averaged on either side of a step, least ratio of the step of the lowest sensor
-to its usual change, and least size of a step [m].
-"""
+EITHER_SIDE = 4  # number of times averaged on either side of a step
+CLEAR = 8.0  # least ratio of the step of the lowest sensor to its usual change
+LEAST_STEP = 3.0  # least size of a step [m]
 
 
 def common_step(measured: MooringMeasurements, still: Floats) -> Fault | None:
     """Find a step common to the depths of all sensors; return None if there is no such step.
 
-    Such a step means that the whole mooring has moved to another depth. A current lowers the lowest
-    sensor less than the highest sensor, whereas a sinking mooring lowers all sensors equally. The
-    search is needed for records without measured currents, because inferred currents would
-    otherwise explain the step.
-
-    Parameters
-    ----------
-    still : (p,) depths of the points in still water [m]
+    The whole mooring has then moved to another depth. A current lowers the lowest sensor less than
+    the highest, whereas a sinking mooring lowers all equally. The search is for records without
+    measured currents, where inferred currents would otherwise explain the step.
     """
     whole = np.flatnonzero(np.isfinite(measured.depth).all(axis=1))
     order = np.argsort(still[measured.point], kind="stable")

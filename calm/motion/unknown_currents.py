@@ -15,75 +15,124 @@ the stored fit with the nearest depths.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from calm.case import Design
 from calm.errors import UsageError
-from calm.motion import line_response
-from calm.motion.common_unknowns import (
-    Common,
-    common_beforehand,
-    fixed_slopes,
-    repeated,
-)
+from calm.motion import common_unknowns, line_response
+from calm.motion.common_unknowns import Common, common_beforehand, fixed_slopes, repeated
 from calm.motion.currents_law import Linear, ReadCurrents, SpeedLaw
-from calm.motion.estimate import CurrentsState, Posterior, posterior
 from calm.motion.line_response import Forward, LineResponse
 from calm.motion.measurements import FREE, MooringMeasurements
 from calm.physics.line import Floats, Integers
 
-KNOTS, FINER = 6, 2.2
-"""Number of knots, and the exponent of their spacing, which is finer near the top because currents
-vary most there.
-"""
-DOWN = 0.9
-"""Share of the times at which the top of the line is at or above the uppermost knot."""
+KNOTS, FINER = 6, 2.2  # number of knots, and the exponent of their spacing, finer near the top
+DOWN = 0.9  # share of the times at which the top of the line is at or above the uppermost knot
+# prior speed: at the top [m/s], decay depth [m] (the scale of the thermocline), constant [m/s]
 SURFACE, DECAY, LEAST = 0.3, 400.0, 0.03
-"""Prior speed: value at the top [m/s], decay depth [m] (the scale of the thermocline), and a
-constant [m/s].
-"""
+# deviations of the logarithm of the prior speed, common to all knots and for each knot, and the
+# share of the knots over which these are correlated
 ALL, EACH, ALIKE = 0.7, 1.4, 0.5
-"""Standard deviations of the logarithm of the prior speed: common to all knots, and of each knot.
-The third value is the correlation length of the deviations of the knots, as a share of their range.
-"""
-PRIOR = 20.0
-"""Weight of the prior distribution, as a number of times of the record."""
-MOST_TIMES, TURNS, FIRST = 240, 12, 2
-"""Number of times from which the distribution is learnt, number of iterations, and number of first
-iterations that leave the distribution unchanged.
-"""
+PRIOR = 20.0  # weight of the prior distribution, as a number of times of the record
+MOST_TIMES = 240  # number of times from which the distribution is learnt
+TURNS, FIRST = 12, 2  # iterations, and the first ones, which leave the distribution unchanged
+# share of the learning times, those of largest knockdown, from which the distribution is updated;
+# at the others, the tide hides the effect of the currents
 STRONGER = 0.5
-"""Share of the learning times from which the distribution is updated: those of largest knockdown.
-
-At the other times, the tide hides the effect of the currents.
-"""
-LONGEST = 1.0
-"""Maximum step of a logarithm."""
-SHARES = (0.03, 0.05, 0.07, 0.1, 0.15, 0.2, 0.3, 0.4)
-"""Trial errors of the line, as shares of the knockdown of each stretch."""
-USUAL, WITHIN = 0.07, 0.7
-"""Prior median of the error share, and the deviation of its logarithm."""
+LONGEST = 1.0  # maximum step of a logarithm
+SHARES = (0.03, 0.05, 0.07, 0.1, 0.15, 0.2, 0.3, 0.4)  # trial errors of the line
+USUAL, WITHIN = 0.07, 0.7  # prior median of the error share, and the deviation of its logarithm
+# prior deviation of the datum, as a share of the water depth; small, because without measured
+# currents the factor on the length absorbs larger errors
 SEABED = 0.0005
-"""Prior deviation of the datum, as a share of the water depth.
+LEAST_PART = 5.0  # percentile taken as the shallowest depth of a sensor
+HIGH, HIGH_KNOWN = 3.0, 0.1  # height above still water that is in doubt [m], and its uncertainty
+AGAIN = 3  # number of iterations at a time, starting from a stored fit
 
-It is small because, without measured currents, the factor on the length absorbs larger errors.
-"""
-LEAST_PART, HIGH, HIGH_KNOWN = 5.0, 3.0, 0.1
-"""Percentile taken as the shallowest depth of a sensor; height of this depth above the still-water
-depth, from which the still-water depth is in doubt [m]; and relative uncertainty of this height.
-"""
-AGAIN = 3
-"""Number of iterations at a time, starting from a stored fit."""
+
+@dataclass(frozen=True)
+class Posterior:
+    """Posterior of the currents, given the pressures."""
+
+    logs: Floats  # (n, g) logarithms of the factors on the currents, relative to the prior mean
+    sea: Floats  # (n,) height of the sea surface above its mean [m]
+    depth: Floats  # (n, p) depths of the points [m]
+    variance: Floats  # (n, p) variances of these depths [m²]
+    evidence: Floats  # (n,) log probability density of the measured depths
+    innovation: Floats  # (n, s) measured minus predicted depths [m]
+    expected: Floats  # (n, s, s) covariance of the innovation [m²]
+
+
+@dataclass(frozen=True)
+class CurrentsState:
+    """Currents at several times, with the linearised line and the posterior at these currents."""
+
+    read: ReadCurrents
+    at: Linear
+    found: Posterior
+
+
+def posterior(
+    one: MooringMeasurements, at: Linear, spread: Floats, common: Common, still: Floats
+) -> Posterior:
+    """Return the posterior of currents and depths, linearised at a state of the currents.
+
+    The factors on the currents have the prior covariance `spread` (g, g) of their logarithms;
+    `still` are the depths (p,) in still water [m].
+    """
+    n, p, g = at.slope.shape
+    s, f = len(one.point), at.common.shape[2]
+    # columns of the state: currents, sea, common factors, datum, offsets
+    free = g + 1
+    q = free + f + 1 + s
+    state = np.zeros((n, q, q))
+    state[:, :g, :g] = spread
+    state[:, g, g] = one.tide_deviation**2
+    state[:, free:, free:] = common.covariance
+    slope = np.zeros((n, p, q))
+    slope[:, :, :g], slope[:, :, g] = at.slope, 1.0
+    slope[:, :, free : free + f], slope[:, :, free + f] = at.common, 1.0
+    seen = slope[:, one.point, :].copy()
+    seen[:, np.arange(s), free + f + 1 + np.arange(s)] = 1.0
+    surface = one.surface
+    lost: Any = ~np.isfinite(at.depth).all(axis=1)  # no current or no equilibrium
+    there = np.where(lost[:, None], still, at.depth)
+    base = there + common.datum + surface[:, None]
+    base = base - np.einsum("npg,ng->np", at.slope, at.logs)
+    known = np.isfinite(one.depth)
+    innovation = np.where(known, one.depth - base[:, one.point] - common.offset, 0.0)
+    noise = np.where(known, common_unknowns.NOISE**2, line_response.UNMEASURED**2)
+    own = common.worst**2 * line_response.own_errors(at.depth, still, common.inferred)
+    bent = own[:, :, one.point]
+    spread_of = slope @ state
+    turned = seen.transpose(0, 2, 1)
+    beside = spread_of @ turned + bent
+    expected = seen @ state @ turned + bent[:, one.point, :]
+    expected[:, np.arange(s), np.arange(s)] += noise
+    inverse = np.linalg.inv(expected)
+    solved = (inverse @ innovation[:, :, None])[:, :, 0]
+    gain = (state @ (turned @ solved[:, :, None]))[:, :, 0]
+    # residuals that the state cannot explain are spread along the line like its own errors
+    depth = base + (beside @ solved[:, :, None])[:, :, 0]
+    whole = (spread_of * slope).sum(axis=2) + np.einsum("npp->np", own)
+    taken = ((beside @ inverse) * beside).sum(axis=2)
+    _, size = np.linalg.slogdet(expected)
+    misfit = (innovation * solved).sum(axis=1)
+    depth[lost] = np.nan
+    variance = np.maximum(whole - taken, 0.0)
+    evidence = np.where(lost, -np.inf, -0.5 * (misfit + size))
+    sea = gain[:, g] + surface
+    return Posterior(gain[:, :g], sea, depth, variance, evidence, innovation, expected)
 
 
 def with_knots(measured: MooringMeasurements, mooring: Design) -> MooringMeasurements:
     """Return the measurements with knots of unknown current in place of their current levels.
 
-    The uppermost knot is at the depth of the top of the line in strong currents, because pressures
-    contain no information on the current above the line. This depth is computed from the readings
-    of the uppermost sensor.
+    Pressures contain no information on the current above the line, so the uppermost knot is at the
+    depth of its top in strong currents, from the readings of the uppermost sensor.
     """
     still, seabed = Forward(mooring, {}).still, float(mooring.water.depth)
     sensor = int(np.argmin(still[measured.point]))
@@ -119,17 +168,9 @@ def learn_currents(
 ) -> Common:
     """Estimate the distribution of the current speeds jointly with the common unknowns.
 
-    Parameters
-    ----------
-    mooring : mooring as in its file
-    measured : measurements with the knots as levels
-    names : names of the factors to estimate
-    tell : function that receives progress messages
-
-    Raises
-    ------
-    UsageError
-        The line has no equilibrium that fits the pressures.
+    The measurements have the knots as levels; `names` are the factors to estimate. Progress
+    messages are passed to `tell`. A UsageError is raised if no equilibrium of the line fits the
+    pressures.
     """
     part = measured.at(_chosen(measured))
     mean, covariance = assumed_law(part)
@@ -148,12 +189,14 @@ def learn_currents(
         tell(f"inferring the currents from the pressures: {turn + 1} of {TURNS}")
         moments = LineResponse(part, *line_response.forwards_of(mooring, common))
         fit = _Fit(moments, replace(common, covariance=nothing), SpeedLaw(mean, covariance))
-        at = fit.linear(logs) if at is None else fit.moved(at, logs)
+        if at is None:
+            at = fit.linear(logs)
+        else:  # slopes change little
+            at = replace(at, logs=logs, depth=moments.depths(fit.read, logs))
         if not np.isfinite(at.depth).any():
-            names_of = ", ".join(part.label)
             raise UsageError(
-                f"--pressures: the line has no equilibrium that fits {names_of}. Check their "
-                "labels, the lengths of the line and the depth of the water"
+                f"--pressures: the line has no equilibrium that fits {', '.join(part.label)}. "
+                "Check their labels, the lengths of the line and the depth of the water"
             )
         found = fit.posterior(at)
         tried = logs + reach[:, None] * np.clip(found.logs - logs, -LONGEST, LONGEST)
@@ -183,17 +226,13 @@ def learn_currents(
 def raised(mooring: Design, measured: MooringMeasurements) -> float:
     """Return the depth error [m] of the sensor that is farthest above its still-water depth.
 
-    The error is the depth of the shallowest readings minus the depth in still water. The result is
-    negative, or 0 if no sensor is far above its still-water depth. Currents only lower a line. A
-    large error therefore means that the water depth, a length or the position of the sensor in the
-    file is wrong.
+    Currents only lower a line, so the water depth, a length or the position in the file is then
+    wrong. The result is negative, or 0 if no sensor is far above its still-water depth.
     """
-    still = Forward(mooring, {}).still
     depth = measured.depth - measured.moved[:, None]
-    least = [np.nanpercentile(one, LEAST_PART) for one in depth.T if np.isfinite(one).any()]
-    used = [j for j, one in enumerate(depth.T) if np.isfinite(one).any()]
-    off = np.array(least) - still[measured.point[used]]
-    high = float(off.min(initial=0.0))
+    known = np.isfinite(depth).any(axis=0)
+    least = np.nanpercentile(depth[:, known], LEAST_PART, axis=0)
+    high = float((least - Forward(mooring, {}).still[measured.point[known]]).min(initial=0.0))
     return high if high < -HIGH else 0.0
 
 
@@ -213,10 +252,6 @@ class _Fit:
         """Return the line in these currents, with its slopes."""
         return self.moments.linear(self.read, logs)
 
-    def moved(self, at: Linear, logs: Floats) -> Linear:
-        """Return the line at new speeds with the old slopes, valid for small changes."""
-        return replace(at, logs=logs, depth=self.moments.depths(self.read, logs))
-
     def posterior(self, at: Linear, common: Common | None = None) -> Posterior:
         """Return the posterior of the currents, linearised at a state."""
         one, still = self.moments.measured, self.moments.forward.still
@@ -233,16 +268,12 @@ class _Fit:
         size = np.linalg.slogdet(rest)[1]
         bent = np.einsum("ns,ns->n", left, np.linalg.solve(rest, left[:, :, None])[:, :, 0])
         own = np.einsum("nk,kl,nl->n", at.logs, np.linalg.inv(self.law.covariance), at.logs)
-        sum_of_all: Floats = np.nan_to_num(bent + own + size, nan=np.inf)
-        return sum_of_all
+        return np.asarray(np.nan_to_num(bent + own + size, nan=np.inf))
 
 
 def _either(first: NDArray[np.bool_], one: Linear, other: Linear) -> Linear:
-    chosen = [
-        np.where(first.reshape(-1, *[1] * (mine.ndim - 1)), mine, yours)
-        for mine, yours in zip(vars(one).values(), vars(other).values(), strict=True)
-    ]
-    return Linear(*chosen)
+    both = zip(vars(one).values(), vars(other).values(), strict=True)
+    return Linear(*(np.where(first.reshape(-1, *[1] * (a.ndim - 1)), a, b) for a, b in both))
 
 
 def _with_mean(fit: _Fit, at: Linear | None) -> Linear:
@@ -266,10 +297,7 @@ def _chosen(measured: MooringMeasurements) -> Integers:
 
 
 def _worst(fit: _Fit, at: Linear, common: Common, used: Integers) -> Common:
-    """Estimate the relative error of the line: RMS of the trial values, weighted by likelihood.
-
-    Successive times with the same error count as one.
-    """
+    """Estimate the relative error of the line: RMS of the trial values, weighted by likelihood."""
     now, log = fit.posterior(at), []
     white = np.linalg.solve(np.linalg.cholesky(now.expected), now.innovation[:, :, None])
     alike = max(repeated(column) for column in white[:, :, 0].T)
@@ -297,10 +325,7 @@ def _placed(begun: Common, known: Common, fit: _Fit, at: Linear, found: Posterio
 
 
 def unknown_state(moments: LineResponse, common: Common) -> CurrentsState:
-    """Find the most likely currents at each time.
-
-    The search starts from the stored model whose depths are closest to the measured depths.
-    """
+    """Find the most likely currents at each time, from the stored model with the closest depths."""
     law, one = common.law, moments.measured
     assert law is not None and law.kept is not None
     read, kept, still = law.read(one.level_depth), law.kept, moments.forward.still

@@ -145,7 +145,8 @@ def locate(
     sound : speed of sound that converts times to ranges, as a profile or a constant [m/s]
     depth : depth of the transponder [m]; None to estimate the depth
     near : planned latitude and longitude [degrees], used to choose between two positions that fit
-        the ranges; the choice allows for the usual fallback of an anchor
+        the ranges; the distance of each from the planned position is compared with the usual
+        fallback of an anchor
 
     Raises
     ------

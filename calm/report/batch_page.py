@@ -42,7 +42,7 @@ def summary_report(summary: Summary) -> blocks.Report:
     """
     lost = State.WARN if summary.count - summary.solved else None
     left_out = blocks.warned(filter(None, [batch_summary.left_out(summary)]))
-    not_judged = (f"Not judged: {name}, {why}." for name, why in summary.not_judged.items())
+    not_judged = (f"Not judged: {name}, because {why}." for name, why in summary.not_judged.items())
     moving = [part for part in summary.parts if part.clamped] or list(summary.parts[:-1])
     through_time = series_figure(summary)
     responses = Figure("Responses of the line", exceedance_figure(summary))

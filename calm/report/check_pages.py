@@ -80,8 +80,9 @@ def checks_table(signed: SignedMooring, findings: Sequence[Finding]) -> Table:
     def of_items(state: State) -> str:
         return f" ({items[state]} open item{'s' * (items[state] != 1)})" if items[state] else ""
 
+    named = {State.PASS: "passed", State.WARN: "warned", State.FAIL: "failed"}
     counted = ", ".join(
-        f"{count} {state.value.replace('-', ' ')}{of_items(state)}"
+        f"{count} {named.get(state, state.value.replace('-', ' '))}{of_items(state)}"
         for state, count in counts.items()
         if count
     )
@@ -100,8 +101,8 @@ def checks_table(signed: SignedMooring, findings: Sequence[Finding]) -> Table:
             RULES[row[0].rule].title, f"({row[1]})" if row[1] > 1 else "", goes_on=True), 1.2),
         *blocks.of_first(*FIGURE_FIELDS, words("Where, case", where_text, 0.9)),
         words("Basis of the limit; remedy", basis, 2.2),
-        note=f"These {len(rows)} rows summarise {len(findings)} findings ({counted}); the files of "
-        "this report list them.",
+        note=f"These {len(rows)} rows summarise {len(findings)} findings: {counted}. "
+        "The option --all-findings lists all of them in checks.csv.",
         aside=(
             "Each rule has a row for its finding with the highest utilisation, and a second row if "
             "another finding is more severe. The number of pieces is in brackets."
@@ -168,7 +169,7 @@ def _launch(assessment: Assessment) -> Table:
     rows = [
         ("Touchdown speed" + drag, say("speed", launch.fall_speed),
          _limit(assessment, "launch-speed")),
-        ("with twice and half the drag",
+        ("Drag doubled or halved",
          f"{slow} to {fast} {QUANTITIES['speed'].display_unit}", ""),
         ("Anchor tension in descent", LOAD.say(launch.anchor_tension), ""),
         (f"Largest tension, {label}", LOAD.say(float(np.nanmax(tension))), _limit_of(loaded)),
@@ -261,8 +262,8 @@ def _breaks(assessment: Assessment) -> Table:
         note += f"Sections with a larger margin omitted: {left}. "
     if unjudged:
         note += (
-            f"Breaks not judged: {unjudged}. They are among the lowest floats, or between these "
-            "floats and the release. In any design, they would leave the release on the seabed."
+            f"Breaks not judged: {unjudged}. A break within the lowest floats, or between the "
+            "lowest floats and the release, leaves the release on the seabed in any design."
         )
     return table_of(
         "Breaks and losses",
@@ -400,7 +401,7 @@ def _limits(limits: Iterable[LimitKey]) -> Table:
         words("Limit", lambda key: Cell(called(key), strong=own(key))),
         number("Value", lambda key: Cell(_value(key, key.value), strong=own(key))),
         words("Source", source, 1.6),
-        aside="limits set by the design are in bold",
+        aside="the limits that the design sets are bold",
         ruled=False,
     )
 

@@ -21,9 +21,9 @@ _SPARES = (
 )
 _IMPLIED = (
     "Each shackle includes a bolt, nut and cotter pin, unless its name or note says “screw pin”. A "
-    "termination that mentions a thimble includes one at each end. Each contact of dissimilar "
-    "metals (a warning of calm check) adds an isolator, and an anode for the less noble metal. All "
-    "other hardware must be listed in the line."
+    "termination that mentions a thimble includes a thimble at each end. Each contact of "
+    "dissimilar metals (a warning of calm check) adds an isolator, and an anode for the less noble "
+    "metal. All other hardware must be listed in the line."
 )
 _BOX = "☐"
 

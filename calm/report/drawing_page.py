@@ -109,7 +109,7 @@ def _sheets(
             title if sheet == 0 else f"{title}, continued",
             shown,
             *columns,
-            aside="from the top, not to scale; all tables use these item numbers",
+            aside="top of the line first, not to scale; all tables use these item numbers",
             note=_DRAWING_NOTE if end == len(rows) and result is case.results[-1] else "",
         )
 
@@ -128,10 +128,10 @@ def _buoyancy(force: float) -> str:
 
 
 _DRAWING_NOTE = (
-    "Depths are at the upper end: planned in the mooring file, computed in still water, and "
-    "computed in the load cases. Lengths are as cut; a clamp has its position on the piece "
-    "instead. The largest tension is the maximum of all moored cases. Net buoyancy is positive "
-    "upwards."
+    "Depths are given at the upper end: the depth planned in the mooring file, and the depths "
+    "computed in still water and in the load cases. Lengths are as cut; for a clamp, the column "
+    "gives the position on the piece. The largest tension is the maximum in all moored cases. Net "
+    "buoyancy is positive upwards."
 )
 
 

@@ -100,8 +100,8 @@ def methods_text(fields: Mapping[str, GriddedQuantity], levels: Floats) -> tuple
             for name, field in fields.items()
         ),
         "Standard deviations include the error of the sensors, the error of their depths "
-        "times the local gradient, and the gap between instruments; levels beyond the "
-        "instruments are flagged.",
+        "times the local gradient, and the error of interpolation between instruments; "
+        "levels beyond the instruments are flagged.",
     )
 
 

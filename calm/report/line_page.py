@@ -191,7 +191,7 @@ def _hardware_table(loads: Sequence[PieceEnvelope]) -> Table:
         number(f"Capa-\ncity {unit}", lambda row: capacity_text(row[0].standing)),
         number("Use %", lambda row: _use(row[0].standing)),
         *(launch if launched else ()),
-        aside="one row per type, for the governing pieces",
+        aside="one row per type, with the most used piece",
         ruled=False,
     )
 

@@ -72,7 +72,7 @@ def missing_block(
         )
     optional = _optional_values(found, [*inventory])
     if not figures:
-        return f"# No check lacks a value.\n{optional}"
+        return f"# All values that the checks need are known.\n{optional}"
     ids = grouped_by(figures, lambda one: one.component_id)
     lines = [f"#\n# {text}" for text in _how_to_use(ids, places)]
     lines += [] if "" in places else ["components:"]

@@ -37,9 +37,7 @@ _ASSUMED = (
     "uncertainty of 15 % in the drag of each part, 1 % of the water depth in the datum, and 1 m "
     "per sensor."
 )
-_NOTHING = (
-    "No sensor fault was found (clock, gain, offset, drift, slipped clamp or exchanged label)."
-)
+_NOTHING = "No sensor fault was found (clock, gain, offset, drift or slipped clamp)."
 
 
 def motion_report(
@@ -171,7 +169,7 @@ def health_table(study: MotionEstimate) -> Table:
     found: dict[str, dict[str, str]] = {label: {} for label in study.sensors}
     faults = [*study.faults(of_line=False)]
     for one in faults:
-        text = one.other or format(one.value, ".3f" if one.kind == "gain" else "+.2f")
+        text = format(one.value, ".3f" if one.kind == "gain" else "+.2f")
         found.setdefault(one.label, {})[one.kind] = text + ("" if one.certain else " ?")
 
     def of(kind: str) -> Callable[[tuple[str, dict[str, str]]], str]:
@@ -182,7 +180,6 @@ def health_table(study: MotionEstimate) -> Table:
         found.items(),
         words("sensor", 0),
         *(number(heading, of(kind), unit) for kind, (heading, unit) in _HEALTH.items()),
-        words("exchanged with", of("exchanged")),
         note="" if all(one.certain for one in faults) else _DOUBTED,
     )
 
@@ -199,9 +196,8 @@ def diagnosis_document(diagnosis: Sequence[Fault]) -> list[dict[str, Any]]:
         times = {key: getattr(one, key) for key in ("since", "until")}
         documents.append(
             members(one, "label", "kind")
-            | (dict.fromkeys(figures) if one.other else figures)
+            | figures
             | members(one, "odds", "corrected")
-            | ({"with": one.other} if one.other else {})
             | {key: str(time)[:19] for key, time in times.items() if not np.isnat(time)}
         )
     return documents

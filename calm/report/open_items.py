@@ -22,6 +22,7 @@ from calm.checks.finding import (
     percent_used,
     worst_of,
 )
+from calm.files.definition import EstimatedFigure
 from calm.quantities import QUANTITIES
 from calm.report.blocks import Cell, OpenItem, Span, number, words
 from calm.report.check_tables import joined, named_components
@@ -31,6 +32,15 @@ OPEN = (State.FAIL, State.UNKNOWN, State.WARN, State.ACCEPTED, State.ESTIMATED, 
 
 _EXPLAINED = ("planned-depth", "as-deployed", "reserve", "freeboard")
 """Rules whose messages explain their values, which are differences or fractions."""
+
+_VALUE_NAMES = {
+    "current": "current", "stretch": "stretch", "strength-steps": "strength",
+    "anchor-weight": "weight in water",
+    "anchor-uplift": "vertical load", "anchor-sliding": "horizontal load",
+    "slack": "tension", "wave-slack": "tension", "watch-circle": "radius",
+    "metals": "potential difference", "backup": "net buoyancy", "recovery": "rise speed",
+}  # fmt: skip
+"""Names of the checked values, for rules whose quantity has a different or more general name."""
 
 _NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine")
 
@@ -245,24 +255,29 @@ def _item_text(group: Sequence[Finding], worst: Finding) -> str:
     case = f"case {worst.case}" if worst.case else ""
     where = ", ".join(filter(None, (worst.component if several else "", case)))
     where = f" ({where})" if where else ""
-    value = f"The value is {found}{where}"
+    quantity = QUANTITIES.get(RULES[worst.rule].quantity)
+    name = _VALUE_NAMES.get(worst.rule, "value" if quantity is None else quantity.heading)
+    value = f"The {name} is {found}{where}"
     bound = "minimum" if worst.sense == ">=" else "limit"
     figures = f"{value}; the {bound} is {limit}." if limit else ""
     if worst.accept is not None:
         until = f", until {worst.accept.until}" if worst.accept.until else ""
         by = worst.accept.by or "no name"
-        figures = figures or f"{value}; its limit is not published." * bool(found)
+        figures = figures or f"{value}; the limit is not published." * bool(found)
         example = " Replace this example before signing." if by == EXAMPLE else ""
         accepted = f"Accepted: “{worst.accept.reason}” ({by}{until}).{example}"
         return f"{figures} {accepted}" if figures else accepted
     if worst.state is State.ESTIMATED:
-        titles = (
-            f"{one.quantity.replace('_', ' ')} is {one.bounds_text}" for one in worst.estimates
-        )
-        return f"{figures} Estimate: {'; '.join(titles)}. Obtain the manufacturer’s value."
+        limits = (f"the {_limit_name(one)} is {one.bounds_text}" for one in worst.estimates)
+        return f"{figures} Estimated: {'; '.join(limits)}. Obtain the manufacturer’s value."
     if figures and worst.rule not in _EXPLAINED and not no_capacity(worst):
         return f"{figures} {worst.remedy or ''}"
     return f"{worst.message} {worst.remedy or ''}"
+
+
+def _limit_name(estimate: EstimatedFigure) -> str:
+    name = estimate.quantity.replace("_", " ")
+    return f"{name} limit" if estimate.quantity == "working_load" else name
 
 
 def advice(finding: Finding) -> str:
@@ -312,7 +327,7 @@ def verdict_sentence(assessment: Assessment) -> str:
     }  # fmt: skip
     parts = [
         f"{_many(counts[State.FAIL], 'failure')} ({rules[State.FAIL]})"
-        if counts[State.FAIL] else "no check fails",
+        * (counts[State.FAIL] > 0),
         f"{_many(counts[State.UNKNOWN], 'unknown')} ({rules[State.UNKNOWN]})"
         * (counts[State.UNKNOWN] > 0),
         f"{_many(counts[State.WARN], 'warning')} ({rules[State.WARN]})"
@@ -324,15 +339,19 @@ def verdict_sentence(assessment: Assessment) -> str:
     ]  # fmt: skip
     failing = {one.rule for group in groups for one in group if one.state is State.FAIL}
     over = [
-        f"{RULES[one.rule].title.lower()} of {short(one.component or 'the line', 30)} "
-        f"{percent_text(one.utilisation)}\u00a0%"
+        f"{short(one.component or 'the line', 30)}, {percent_text(one.utilisation)}\u00a0% "
+        f"({RULES[one.rule].title.lower()})"
         for one in map(governing, groups)
         if (one.utilisation or 0.0) > 1.0 and one.rule not in failing
     ]
-    beyond = (
-        f" Above 100\u00a0%, but not a failure: {', '.join(dict.fromkeys(over))}." if over else ""
-    )
-    return f"{_capital(', '.join(filter(None, parts)))}.{beyond}"
+    items = ", ".join(filter(None, parts))
+    sentences = [
+        "" if counts[State.FAIL] else "No check fails.",
+        f"Open items: {items}." if items else "",
+        f"Above 100\u00a0% without being a failure: {'; '.join(dict.fromkeys(over))}."
+        if over else "",
+    ]  # fmt: skip
+    return " ".join(filter(None, sentences))
 
 
 def _many(count: int, word: str) -> str:

@@ -260,7 +260,7 @@ def cases_table(signed: SignedMooring) -> Table:
         *(figure.field(lead[0]) for figure, lead in shown),
         note=note,
         ruled=False,
-        aside="governing values in bold, their components in the last row",
+        aside="governing values are bold; the last row names their components",
     )
     numbers = item_numbers(*signed.standing[0].results) if signed.standing else {}
 
@@ -309,8 +309,8 @@ def governing_table(signed: SignedMooring) -> Table:
         *check_fields(MOST_LABELS),
         note=note,
         ruled=False,
-        aside="Use is the utilisation (demand / capacity or required / available), rounded up. "
-        "The bars have a line at 100 % and are hatched beyond it.",
+        aside="Use is demand / capacity or, for a minimum, required / available, rounded up. "
+        "Bars are hatched above the line at 100 %.",
     )
 
 

@@ -17,21 +17,21 @@ from calm.waves.pieces_in_sea import MooringInSea, PieceInWaves, PieceLoads
 
 _NOTE = (
     "Tension is given at the upper end: mean, standard deviation, most probable maximum and "
-    "minimum. Tz is the mean period between upward crossings of the mean. Heave and tilt are "
-    "standard deviations. ! marks a piece that goes slack."
+    "minimum. Tz is the mean time between two crossings of the mean tension in the upward "
+    "direction. Heave and tilt are standard deviations. ! marks a piece that goes slack."
 )
 _SEAS = (
-    "Measured: range of the standard deviation to be expected from measurements at sea. Half, "
-    "twice: standard deviation with half and with twice the cut-off frequency."
+    "Measured: range of the standard deviation, estimated from tensions measured at sea. Half, "
+    "twice: standard deviation if the cut-off frequency is halved or doubled."
 )
 _CUT_OFFS = (
     "The table gives the tension at the top for other cut-off frequencies of the waves; the drag "
-    "is unchanged. Most changed: the piece whose standard deviation changes most."
+    "is unchanged. Most changed: the piece whose standard deviation of tension changes most."
 )
 _LIFE = (
-    "Life: years until the damage sum reaches 1 in these seas. Low, high: life with standard "
-    "deviations of tension 15 % larger and smaller. Half, twice: life with half and twice the "
-    "cut-off frequency. The fatigue curves are quoted from secondary sources: compare them with "
+    "Life: years until the damage sum reaches 1 in these seas. Low, high: life if the standard "
+    "deviations of tension are 15 % larger or smaller. Half, twice: life if the cut-off frequency "
+    "is halved or doubled. The fatigue curves are quoted from secondary sources: compare them with "
     "the standard."
 )
 

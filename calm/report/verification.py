@@ -58,9 +58,9 @@ def verification_part(findings: Findings) -> ReportPart:
 def figures(outcome: CaseOutcome) -> tuple[str, ...]:
     """Format the outcome of a case as a row, in the order of `COLUMNS`.
 
-    The computed value and the difference have one digit more than the tolerance. They have two
-    digits more if the expected value has at least two digits more. Further digits are rounding
-    errors that differ between machines.
+    The computed value and the difference are given to one decimal place more than the tolerance,
+    or to two more if the expected value has at least two more than the tolerance. Further digits
+    are rounding errors that differ between machines.
     """
     case = outcome.case
     expected = f"{case.expected:.12g}"

@@ -155,11 +155,11 @@ def miss_at(about: About, x: float) -> float:
 
 
 def place(problem: LineProblem, unknown: Unknown, x: float) -> tuple[float, float]:
-    """Set the loads of the pieces at the surface, with the unknown set to x.
+    """Set the loads of those pieces that are at the surface, for the value x of the unknown.
 
     Returns
     -------
-    Depth of the free end [m], and the length of line above the surface at the free end [m], or 0.
+    Depth of the free end [m], and the length of line at the free end that is out of the water [m].
     """
     work, loads, given = problem.work, problem.course.loads, problem.loads
     if work.left[CHANGED] > 0.0:

@@ -81,7 +81,8 @@ class NetLeg:
 class LaidLeg:
     """A leg prepared for the march, with the `LineProblem` of its line.
 
-    If the lower end of a leg is free, the line is listed from the lower end.
+    The pieces of the line are in order from the free end. They begin at the lower end of the leg if
+    the lower end is free.
     """
 
     leg: NetLeg

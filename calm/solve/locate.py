@@ -432,7 +432,7 @@ def turns_back(sea: Sea) -> bool:
 
 
 def roots_afloat(problem: LineProblem, unknown: Unknown) -> tuple[Root, Root]:
-    """Find two stable roots for the used fraction of the top float's buoyancy.
+    """Find up to two stable equilibria, whose unknown is the top float's used buoyancy fraction.
 
     If there are several roots, the first result is the root that is reached as the current rises
     from zero. If there is only one root, the second result is not `found`.

@@ -113,7 +113,7 @@ class EditableTable(Vertical):
             self.go_on(then, text)
 
     def abandon(self, reason: str = "") -> None:
-        """Cancel editing; show the `reason` why an invalid text was discarded, if there is one."""
+        """Cancel editing; if a `reason` is given, show why an invalid text was discarded."""
         self.leave_cell()
         self.abandoned()
         if reason:
@@ -174,7 +174,7 @@ class CellEditor(field.ScrolledEntry):
     def text(self) -> str | None:
         """Text to write to the cell; None if the text is unchanged or invalid."""
         reading = self._check(self.value)
-        # an untouched value only gets its unit, no tidying
+        # an untouched value may get a unit, but is not tidied
         is_completed = reading.text.startswith(f"{self.value.strip()} ")
         return reading.text if reading.is_good and (self.is_typing or is_completed) else None
 
@@ -218,7 +218,7 @@ class CellEditor(field.ScrolledEntry):
         self._owner.abandon()
 
     def on_blur(self, event: events.Blur) -> None:
-        """Accept a valid value when the focus moves elsewhere, such as after a mouse press."""
+        """Accept a valid value when the focus moves elsewhere, for instance by a mouse press."""
         self.call_after_refresh(self._end_if_left)
 
     def _end_if_left(self) -> None:

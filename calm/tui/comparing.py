@@ -58,7 +58,7 @@ class ComparingScreen(line_screen.LineScreen):
         def show(before: View, lines: list[str]) -> None:
             self.workspace.tell("")
             now = self.workspace.view
-            shape = getattr(before.result, "shape", None)  # a net has one for each leg
+            shape = getattr(before.result, "shape", None)  # a net has one shape for each leg
             if shape is not None and now and type(before.result) is type(now.result):
                 self.pictures.overlay(shape)
             answers = [Answer("b", "back to the line")]
@@ -232,7 +232,7 @@ class ComparingScreen(line_screen.LineScreen):
 def changed_lines(before: str, after: str) -> list[str]:
     """Return the first lines that differ between two texts.
 
-    Removed lines begin with ``-``, added lines with ``+``.
+    Removed lines begin with ``-``, and added lines with ``+``.
     """
     diff = unified_diff(before.splitlines(), after.splitlines(), n=0, lineterm="")
     lines = [line for line in diff if not line.startswith(("---", "+++", "@@"))]

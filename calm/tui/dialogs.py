@@ -159,7 +159,7 @@ class Question(ModalScreen[Then | None]):
 class Form(Screen[T | None]):
     """Fields that are entered together.
 
-    Enter moves to the next field; on the last field it accepts all fields.
+    Enter moves to the next field; on the last field, Enter accepts all fields.
     """
 
     @property

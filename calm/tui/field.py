@@ -23,7 +23,7 @@ from calm.tui.key_table import bindings
 
 
 class ScrolledEntry(Input):
-    """Text input that leaves pasted text of several lines to its container."""
+    """Text input that ignores a paste of several lines, which its container then receives."""
 
     virtual_size = Reactive(Size(0, 0), repaint=False)
 
@@ -173,7 +173,7 @@ class Field(Horizontal):
             self._show_note(self._note)
 
     def note(self, reading: Reading) -> str:
-        """Return the error or completion of the typed text, or else the note of the field."""
+        """Return the error or the meaning of the typed text, or else the note of the field."""
         return reading.feedback(self.input.value) or self._note
 
     def _tell(self, reading: Reading) -> None:

@@ -50,9 +50,9 @@ class LinePane(LineSearch):
         return not self.editor.is_open and (bool(self.table.rows) or action not in _FROM_A_ROW)
 
     def show_rows(self) -> None:
-        """Show the rows of the draft, with the results or mistakes in the last view.
+        """Show the rows of the draft, with the results or mistakes of the latest view.
 
-        If the last view has neither, the results are those of the last view with an equilibrium.
+        If this view has neither, show the results of the latest view with an equilibrium.
         """
         workspace, view = self.workspace, self.workspace.view
         workspace.refresh_index()

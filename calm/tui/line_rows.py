@@ -45,7 +45,7 @@ def table_rows(
 
     An item of several pieces shows, in each column, the least favourable value of these pieces. If
     `view` was computed from an earlier text, a row shows values only if its component and label are
-    the same as in that text. The rows `added` since then show none.
+    the same as in that text. Rows that were `added` after that text show no values.
     """
     found = _figures(draft, view, added)
     wrong = _wrong_items(draft, view)
@@ -99,7 +99,7 @@ def _figures(
 
 
 def _called(items: Sequence[LineItem], place: Place) -> tuple[str, str, bool]:
-    """Return component, label, and whether it is clamped, to identify a row in another text."""
+    """Return component, label, and whether the row is a clamp, to find the row in another text."""
     item = items[place.item]
     values = (item.clamps[place.clamp] if place.is_clamp else item).values
     use = values.get("use", "")
@@ -152,7 +152,7 @@ _NO_LENGTH = "The component determines the length"
 
 @dataclass(frozen=True)
 class LineCell:
-    """Cell of the line table, whose value can be edited in the file of a workspace."""
+    """Cell of the line table; edits of the cell are written to the file of a workspace."""
 
     workspace: Workspace
     spot: Place

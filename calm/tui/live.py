@@ -57,11 +57,11 @@ class View:
     result : the solution, or None
     failure : reason why the line has no equilibrium, or None
     findings : findings of the design check; empty for a tow
-    tighter : findings in other situations, with a higher utilisation than in `findings`
+    tighter : findings in other situations in which the utilisation is higher than in `findings`
     environments : names of the environments besides the default environment
     rows : results of all rows in file order; each piece is followed by its clamps
-    complete : whether the findings are all those of `calm check` (see `judge_fully`); also true for
-        a solved tow, which has no findings
+    complete : whether `findings` has all findings of `calm check` (see `judge_fully`); also true
+        for a solved tow, which has no findings
     cases : results in each environment; empty before the full check
     elsewhere : mistakes in other environments
     held : solutions of a line without an anchor in every environment and situation
@@ -378,7 +378,7 @@ def rows_of(
 
 
 def _lacks_strength(finding: Finding) -> bool:
-    """Return whether a finding shows that the rule `strength` lacks a value, accepted or not."""
+    """Return whether a finding, accepted or not, shows that the rule `strength` lacks a value."""
     if finding.missing is not None:
         return strength.name in finding.missing.needed_by
     lacks = finding.lacks is not None and finding.utilisation is None

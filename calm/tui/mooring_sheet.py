@@ -84,7 +84,7 @@ def _top_level(key: str) -> list[FormField]:
 
 
 def part_of_row(file: MooringFile | None, spot: Place | None) -> Piece | Clamp | None:
-    """Return the only piece or clamp of a row; None if the row has several or none."""
+    """Return the piece or clamp of a row; None unless the row has exactly one piece or clamp."""
     found = [part for part in parts_of(file.pieces if file else ()) if part.place.row == spot]
     return found[0] if len(found) == 1 else None
 
@@ -183,7 +183,7 @@ def entered(
 ) -> Draft:
     """Write texts to an entry of a list in the file (see `entry_text`); return the new draft.
 
-    A missing entry is added. An entry that has only its identifying key left is deleted.
+    A missing entry is added. An entry is deleted if only its identifying key remains.
     """
     changed = {
         key: text for key, text in texts.items() if text != entry_text(draft, rows, called, key)
@@ -206,7 +206,10 @@ def _index(draft: Draft, rows: Location, called: tuple[str, str]) -> int | None:
     return next((i for i, one in entries if isinstance(one, dict) and called in one.items()), None)
 
 
-_ELSEWHERE = "part of a catalogue assembly: use its parts, or define it in the file (o)"
+_ELSEWHERE = (
+    "this component is part of an assembly from the catalogue. To enter its values, put the parts "
+    "of the assembly in the line instead, or define the component in the file (key o)"
+)
 PENDING = "Launch, recovery, break and wave checks are still running."
 _SOURCE = "data sheet, test certificate …"
 
@@ -241,10 +244,10 @@ class Missing:
     ----------
     use, kind : id and kind of the component
     labels : labels of the pieces and clamps concerned, as keys of a dict
-    targets : locations in the file to which each missing value is written, by key. If the file
-        defines the component, the location is the definition. Otherwise the locations are all rows
-        that lack the value or, for a part of an assembly, the row of the assembly. There is no
-        location if the row cannot take the value.
+    targets : locations in the file to which each missing value is written, by key. This is the
+        definition of the component, if the file has one. Otherwise these are all rows that lack the
+        value or, for a part of an assembly, the row of the assembly. Rows that cannot hold the
+        value are omitted.
     estimates : estimates for the class of component, by key, as texts without their source
     """
 
@@ -269,7 +272,7 @@ class Missing:
 
 
 def missing_figures(view: View, draft: Draft) -> list[Missing]:
-    """Return the missing component values that the findings need, in the order of the line."""
+    """Return the component values that findings report as missing, in the order of the line."""
     if view.file is None:
         return []
     wanted: dict[Place, dict[str, None]] = {}

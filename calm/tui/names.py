@@ -177,6 +177,6 @@ class EnvironmentChoice:
 
     @property
     def next_environment(self) -> str | None:
-        """Environment that follows the current one; the last is followed by the default."""
+        """Environment after the current environment; the default follows the last environment."""
         names, here = self.environments, self.environment
         return names[(names.index(here) + 1) % len(names)] if here in names else None

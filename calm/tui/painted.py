@@ -32,9 +32,9 @@ _TOKEN = re.compile(
 )
 """Pattern of a position, style, frame mark, text, or any other sequence or control character."""
 _INCOMPLETE = re.compile(r"\x1b(\[[\x20-\x3f]*|\][^\x07\x1b]*\x1b?)?$")
-"""Beginning of a sequence at the end of a text.
+"""Pattern of an incomplete sequence at the end of a text.
 
-On Windows, Textual writes 8192 characters at a time.
+On Windows, Textual writes 8192 characters at a time, and so cuts sequences.
 """
 _NEW_SCREENS = re.compile(r"\x1b\[(\?1049[hl]|[23]J)")
 
@@ -73,7 +73,7 @@ class Painted:
         self._touched.update(range(len(self._wanted)))
 
     def take(self, text: str) -> str:
-        """Store the cells that a text contains; return the rest of it, to be sent at once."""
+        """Store the cells that a text contains; return the rest of the text, to be sent at once."""
         text = self._rest + text
         cut = _INCOMPLETE.search(text)
         self._rest = text[cut.start() :] if cut else ""
@@ -146,7 +146,7 @@ class Pace:
         self._since: float | None = None
 
     def holds(self, now: float) -> bool:
-        """Return whether a frame must wait, so that the next frame contains all changes."""
+        """Return whether a frame must wait, because the terminal has not answered yet."""
         return self._answers and self._since is not None and now - self._since < _PATIENCE
 
     def question(self, now: float) -> str:
@@ -179,7 +179,7 @@ class TerminalOutput:
         self._lock = RLock()  # the thread that reads the keyboard also switches modes
 
     def driver_class(self, terminal: type[Driver]) -> type[Driver]:
-        """Return a subclass of the driver class `terminal`, which writes through this output."""
+        """Return a subclass of the driver class `terminal` that writes through this output."""
         return type(f"Painting{terminal.__name__}", (_PaintingDriver, terminal), {"output": self})
 
     def take(self, text: str, send: Callable[[str], None]) -> None:

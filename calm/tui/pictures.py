@@ -162,7 +162,7 @@ class Pictures(Vertical):
     def _show_tabs(self) -> None:
         """Show the tabs, with the current tab in reverse video.
 
-        A cursor precedes it if the picture has the focus.
+        If the picture has the focus, a cursor precedes the tabs.
         """
         parts = [theme.CURSOR if self._picture.has_focus else " "]
         for number, tab in enumerate(TABS, 1):

@@ -27,7 +27,7 @@ _READ_AGAIN = "Reloaded: the file was changed by another program"
 
 
 class Saving:
-    """Saves the file of a workspace, asks before overwriting, and watches for external changes.
+    """Saver of the file of a workspace, which asks before it overwrites, and watches for changes.
 
     Parameters
     ----------
@@ -145,7 +145,7 @@ class Saving:
     def check_external_change(self) -> None:
         """Reload the file if another program has changed it.
 
-        If that would discard unsaved work, warn instead.
+        If there is unsaved work, show a warning instead.
         """
         session, screen = self._session, next(reversed(self._app.screen_stack), None)
         if not isinstance(screen, DraftScreen):
@@ -159,7 +159,7 @@ class Saving:
             if is_new:
                 session.history.saved("")
                 self._workspace.tell(_GONE, wrong=True)
-                self._workspace.edited()  # keep the draft like every change
+                self._workspace.edited()  # back up the draft, as after every change
         elif not (session.changed or screen.is_typing):
             self._reload(quietly=not is_new)
         elif is_new:

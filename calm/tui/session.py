@@ -258,8 +258,8 @@ class Session:
     def paste(self, spot: Place | None, *, below: bool) -> Place | None:
         """Paste the copied rows next to a row.
 
-        Return the last pasted row if pasted below, and the first if pasted above. Return None if
-        the clipboard is empty.
+        Return the last pasted row if the rows are pasted below, and the first pasted row if they
+        are pasted above. Return None if the clipboard is empty.
         """
         count = len(self.copied)
         label = f"paste {count} row{'s' * (count != 1)}"
@@ -311,7 +311,7 @@ class Session:
     # backup in case of a crash
 
     def note_unsaved(self) -> WorkingFile:
-        """Pass the unsaved text to the working file, for the next backup copy; return this file."""
+        """Pass the unsaved text to the working file for its next backup copy; return the file."""
         self.file.unsaved = self.draft.text if self.changed else None
         return self.file
 

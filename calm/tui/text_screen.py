@@ -197,6 +197,6 @@ class TextScreen(screen.DraftScreen):
 
 
 def _row(text: str, line: int) -> int:
-    """Convert a line number of the file to a row of the editor, which knows more line breaks."""
+    """Convert a line number of the file to a row of the editor, which breaks at more characters."""
     ends = [0, *(found.end() for found in _LINE_BREAK.finditer(text))]
     return len(text[: ends[min(line, len(ends)) - 1]].splitlines())

@@ -138,6 +138,6 @@ def _parts(view: View | None, note: str) -> Iterator[tuple[VerdictLine, Renderab
 
 
 def state_word(view: View | None, *, old: bool = False) -> str:
-    """Return the symbol and headline of the verdict; the symbol of an `old` one is an ellipsis."""
+    """Return the symbol and headline of the verdict; the symbol of an `old` view is an ellipsis."""
     sign = theme.ELLIPSIS if old else headline(view).sign.strip()
     return f"{sign} {headline(view).text}".strip()

@@ -191,8 +191,8 @@ def _holds(
 ) -> VerdictLine:
     """Return the verdict line on the required and the actual anchor weight.
 
-    Without an anchor, it gives the required weight only, which is the largest of all situations
-    once these are solved.
+    If the line has no anchor, the verdict line gives only the required weight. This weight is the
+    largest of all situations, once all situations are solved.
     """
     if worst is None:
         needed, when = result.anchor_load.required_weight, ""
@@ -217,7 +217,7 @@ def _worst(findings: Sequence[Finding], rule: Rule) -> Finding | None:
 def _at_worst(worst: Finding, figure: str) -> str:
     """Return the text for a value in the situation of the most severe finding.
 
-    The text is "" if that is the mooring as given.
+    The text is "" if that situation is the mooring as given.
     """
     return "" if worst.situation == AS_GIVEN else f"; {figure} at worst{_situation(worst)}"
 
@@ -247,7 +247,7 @@ def _found(
 ) -> Iterator[VerdictLine]:
     """Yield failures and warnings with reason and remedy, then summaries of unknowns and passes.
 
-    A rule passes if every component passes; with a missing value its state is unknown.
+    A rule passes if every component passes. If a value is missing, the state is unknown.
     """
     from calm.checks.finding import governing
     from calm.report.check_tables import named, named_components

@@ -153,7 +153,7 @@ class WaterForm:
         return self._with_own(keys).put_at(self.at(*keys), value)
 
     def begun(self, keys: Place, form: str) -> Value | None:
-        """Return the first value of a property in a new form, from known or typical values.
+        """Return the initial value of a property in a new form, from known or typical values.
 
         None means that the key can be omitted.
         """
@@ -172,7 +172,7 @@ class WaterForm:
     def _begun_current(self, form: str) -> Value | None:
         """Return the initial current for another form.
 
-        It is based on the uniform current, or on the first row of the table.
+        The initial current is based on the uniform current, or on the first row of the table.
         """
         place = {name: self.text("current", name) for name in ("speed", "toward")}
         columns, rows = self.table("current")
@@ -346,7 +346,7 @@ class ProfileGrid(Grid):
             headings = water_tables.offered_headings(copied.headings, columns)
             water_tables.rows_in(columns, headings, copied.rows)
         except water_tables.UnknownColumns:
-            pass  # the user names the columns
+            pass  # the user can then name the columns
         except (NoTableError, water_tables.NoRows) as error:
             self.tell(f"Not pasted: {error}", wrong=True)
             return

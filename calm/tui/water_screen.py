@@ -99,7 +99,7 @@ class WaterScreen(screen.DraftScreen):
 
     @property
     def water(self) -> WaterForm:
-        """Access to the environment shown, in the current draft."""
+        """The displayed environment, as written in the current draft."""
         standing = self.session.standing
         here = standing.environment
         return WaterForm(self.session.draft, here if here in standing.environments else None)
@@ -272,7 +272,7 @@ class WaterScreen(screen.DraftScreen):
         dialogs.enter(self.app, "Paste a table", text, [form_field], take)
 
     def on_paste(self, event: events.Paste) -> None:
-        """Use a pasted table as the current profile, unless another table of the form takes it."""
+        """Use a pasted table as current profile, unless another table of the form receives it."""
         if len(event.text.splitlines()) > 1 and self.settle():
             grid = self.query_one("#current-table", ProfileGrid)
             if self.water.form("current") != "table":

@@ -166,7 +166,7 @@ def offered_headings(headings: Sequence[str] | None, columns: Sequence[str]) -> 
 def rows_in(columns: Sequence[str], headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Rows:
     """Convert copied rows to the columns of a table.
 
-    If the copied rows have the same columns, the texts are kept.
+    If the copied rows have the same columns as the table, the texts are kept.
 
     Raises
     ------

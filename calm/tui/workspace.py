@@ -44,7 +44,7 @@ def problem_text(problem: Problem, path: Path) -> Content:
 
 
 def mistakes(problems: Sequence[Problem], path: Path) -> str:
-    """Return the number of mistakes and where they are, as text; "" if there are no mistakes."""
+    """Return the number of mistakes and their files, as text; "" if there are no mistakes."""
     count = len(problems)
     files = {each.path for each in problems if is_elsewhere(each, path)}
     if not count:

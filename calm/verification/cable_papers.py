@@ -54,7 +54,7 @@ BUOY_LIFT = _BUOY_TENSION * sin(_BUOY_ANGLE)
 def _only(k: float, weight: float, **given: float) -> ChartSolution:
     """Return the cable with three given quantities.
 
-    If there are several, the first is returned, which lies above A everywhere.
+    If there are several such cables, return the first, which lies above A everywhere.
     """
     answer = chart_solve(k, weight, **given)
     if not answer.solutions:
@@ -76,7 +76,7 @@ _below = partial(_only, _K, _TOW_WEIGHT)
 def buoy(buoyancy: float, depth: float) -> tuple[Line, Water]:
     """Return the line and the water for a buoy on a cable.
 
-    The drag of the cable at 1 m/s is K w = 12 N/m.
+    The drag of the cable at 1 m/s is 12 N/m, which is K = 2.4 times the weight of the cable.
 
     Parameters
     ----------

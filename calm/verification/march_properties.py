@@ -35,7 +35,7 @@ _TIGHT = Settings(tolerance=1e-9)
 _DRAG = sphere_drag(1.25, 0.6)
 
 # A line with all kinds of components: floats, wire, elastic rope, instruments that align with the
-# line and others that do not, clamps, and chain. It is below the surface in a veering current.
+# line and others that do not, clamps, and chain. The line is submerged, in a veering current.
 _PIECES = (
     LinePiece(1.25, False, 7000.0, _DRAG, _DRAG, False, volume=1.02),
     replace(
@@ -68,7 +68,7 @@ def _solved() -> Solution:
 def _apart(one: Solution, other: Solution) -> float:
     """Return the largest difference between two solutions at the ends of their pieces.
 
-    Differences in position are divided by the depth, those in tension by the largest tension.
+    Differences in position are divided by the depth, and those in tension by the largest tension.
     """
     here, there = one.piece_nodes.ravel(), other.piece_nodes.ravel()
     place = np.abs(one.position[here] - other.position[there]).max() / one.water.depth

@@ -25,7 +25,7 @@ PRINTED = "Half a unit of the last printed digit, with a margin of 10 %."
 
 
 class Kind(StrEnum):
-    """Origin of an expected value, which determines how strong an agreement is as evidence."""
+    """Origin of an expected value, which determines how much an agreement with CALM proves."""
 
     PUBLISHED = "published"
     CLOSED_FORM = "closed form"

@@ -38,8 +38,8 @@ number of elements or frequencies is doubled.
 """
 
 COARSEST, FEWEST, MOST_HALVINGS = 1.0 / 50.0, 32, 4
-"""Longest initial elements, as a fraction of the depth; smallest number of frequencies; largest
-number of refinements of both.
+"""Initial length of the longest elements, as a fraction of the depth, initial number of
+frequencies, and maximum number of refinements of elements and frequencies.
 """
 
 SMALL = 0.05
@@ -128,8 +128,8 @@ class _Setting:
     def cut_offs(self, sea: SeaState, response: WaveResponse, flow: Floats) -> CutOffs:
         """Compute the responses for half and for twice the cut-off frequency of a response.
 
-        All use the drag linearised for the given response. Frequencies above the cut-off have the
-        same relative spacing as those below.
+        All responses use the drag linearised for the given response. Frequencies above the cut-off
+        have the same relative spacing as those below.
         """
         last = float(response.omega[-1])
         count = int(np.ceil(np.log(2.0) / np.log(last / float(response.omega[-2])))) + 1
@@ -149,8 +149,8 @@ class _Setting:
     ) -> tuple[tuple[Floats, Floats], list[Floats]]:
         """Compute the standard deviations of tension [N], and of the pitch of the float.
 
-        They are arrays (seas, pieces) and (seas, 1). Tensions are 0 on the seabed, and the pitch is
-        0 if unknown. Also return the flow past the nodes in each sea.
+        The results are arrays (seas, pieces) and (seas, 1). Tensions are 0 on the seabed, and the
+        pitch is 0 if unknown. Also return the flow past the nodes in each sea.
         """
         found = [self.respond(sea, flow, **how) for sea, flow in zip(seas, first, strict=True)]
         tensions = np.array([_by_piece(self.line, response) for response, _ in found])

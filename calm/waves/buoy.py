@@ -35,9 +35,11 @@ disc (Lamb 1932).
 """
 
 END_LOSS = 0.42
-"""Ratio of length to radius for the reduction of added mass in surge by flow around the keel: the
-added mass of a section at height h above the keel is multiplied by 1 - e^(-h/0.42R). Cylinders with
-a draft of 0.6 to 10 radii then have the added mass of a panel method (Capytaine 3) within 4 %.
+"""Length scale, in radii R, over which the flow around the keel reduces the added mass in surge.
+
+The added mass of a section at height h above the keel is multiplied by 1 - e^(-h/0.42R). For
+cylinders with a draft of 0.6 to 10 radii, the added mass then agrees with that of a panel method
+(Capytaine 3) within 4 %.
 """
 
 SECTIONS = 46
@@ -69,10 +71,10 @@ class Buoy:
         [degrees/m] and phase [degrees] of pitch may follow
     follows : whether heave and pitch follow the motion of the water surface
     panels : (12, f) results of a panel method. Row 0 is the angular frequency ω [rad/s]. Rows 1 to
-        8 are added mass and radiation damping, in turn for heave, for surge, for the coupling of
-        surge with pitch, and for pitch about the surface. Rows 9 to 11 are the exciting forces per
-        metre of elevation in heave, surge and pitch; the last two are divided by ω². None means
-        that formulas are used instead
+        8 are four pairs of added mass and radiation damping: for heave, for surge, for the coupling
+        of surge with pitch, and for pitch about the surface. Rows 9 to 11 are the exciting forces
+        per metre of elevation in heave, surge and pitch; the forces in surge and pitch are divided
+        by ω². None means that formulas are used instead
     profile : (s, 2) radius of each horizontal section of the hull, and height of the section above
         the surface [m], from the keel up; None if the pitch is not computed
     centre : height of the centre of mass above the surface, for the float with all pieces on it [m]
@@ -110,9 +112,10 @@ class Buoy:
 
         The exciting force is per metre of wave elevation. Without a prescribed response or a panel
         method, the float is represented by a disc with radius R at the draft T. The Froude-Krylov
-        force is ρgA e^(-kT) 2 J1(kR)/(kR). The added mass is `DISC_ADDED` ρR³, and the acceleration
-        of the water at this draft excites it. The radiation damping follows from Haskind's
-        relation, k ω |X|² / (2 ρ g²) in deep water (Newman 1977, 6.18).
+        force is ρgA e^(-kT) 2 J1(kR)/(kR). The added mass is `DISC_ADDED` ρR³. The added mass times
+        the mean acceleration of the water over the disc is part of the exciting force. The
+        radiation damping follows from Haskind's relation, k ω |X|² / (2 ρ g²) in deep water (Newman
+        1977, 6.18).
 
         Parameters
         ----------
@@ -188,9 +191,9 @@ class Buoy:
     def righting(self, profile: Floats, density: float, gravity: float) -> float:
         """Return the righting moment of the float per radian of pitch [N m].
 
-        The righting moment is the sum of the moments of the waterplane, the buoyancy and the
-        weight, and of the pull of the line at the bail. For a free float it equals weight times
-        metacentric height.
+        The righting moment is the sum of four moments: of the waterplane, of the buoyancy, of the
+        weight, and of the pull of the line at the bail. For a free float, the righting moment is
+        the weight times the metacentric height.
         """
         radius, height = profile.T
         buoyancy = float(np.trapezoid(radius**2 * height) / np.trapezoid(radius**2))
@@ -204,10 +207,11 @@ class Buoy:
     ) -> tuple[Floats, Floats, Complexes]:
         """Compute added mass (3, f), damping (3, f) and exciting forces (2, f), as in `pitch`.
 
-        They are integrated over the sections of the hull. Exciting forces include the wave pressure
-        on the hull and the inertia of the water, with the local acceleration: the added mass of the
-        sections is reduced by `END_LOSS`, that of the bottom follows from `DISC_TURNED`. Radiation
-        follows from Haskind's relation, k ω Xi Xj / (4 ρ g²) in deep water (Newman 1977, 6.18).
+        All are integrated over the sections of the hull. Exciting forces include the wave pressure
+        on the hull and the inertia of the water, with the local acceleration. The added mass of the
+        sections is reduced by `END_LOSS`, and that of the bottom follows from `DISC_TURNED`.
+        Radiation follows from Haskind's relation, k ω Xi Xj / (4 ρ g²) in deep water (Newman 1977,
+        6.18).
         """
         radius, height = profile.T
         area = pi * radius**2
@@ -335,7 +339,7 @@ def buoy_of(leg: Leg, solution: Solution, follows: bool) -> Buoy | None:
 def _round_hull(hull: Hull | None, draft: float) -> tuple[float, Floats | None]:
     """Return the radius of a hull's waterplane [m], and its profile as in `Buoy`.
 
-    They are 0 and None if the hull is unknown.
+    The results are 0 and None if the hull is unknown.
     """
     if hull is None or draft <= 0.0:
         return (0.5 * hull.area / hull.height if hull and hull.form == SPAR else 0.0), None

@@ -99,8 +99,9 @@ CURVES = {
 
 The curves of DNV and API are two standard deviations below the mean of the tests; their constants
 are from secondary texts, since the standards themselves were not available. The curves of `_SOTS`
-are published as amplitudes that break at the first cycle: 1.5, 2.25, 1.7 and 2.4 times the breaking
-load, half the range used here; their distance from the mean is not stated.
+are published with the amplitude of a cycle that breaks the part at once: 1.5, 2.25, 1.7 and 2.4
+times the breaking load, which is half of the range used here. The distance of these curves from the
+mean is not stated.
 """
 
 

@@ -48,8 +48,8 @@ class LumpedLine:
     position : (n, 3) position east, north, and up from the surface [m]
     mass : (n,) mass at each node [kg]
     added_across, added_along : (n,) added mass normal and tangential to the line [kg]
-    water_across, water_along : (n,) mass of displaced water for the force of the wave pressure,
-        normal and tangential to the line [kg]
+    water_across, water_along : (n,) mass of water on which the pressure of the waves acts, normal
+        and tangential to the line [kg]; a cable or chain has no tangential mass
     across_drag, along_drag, any_drag : (n,) K of the drag K|v|v for the flow normal to the line,
         for the tangential flow, and for flow in any direction [N/(m/s)²]
     tangent : (n, 3) unit vectors along the line at the nodes, pointing down the line
@@ -254,7 +254,7 @@ def _figures_of(component: Component, length: float) -> dict[str, float]:
 def _volume(component: Component, length: float) -> float:
     """Return the displaced volume [m³], or for a flexible component per metre [m³/m].
 
-    It is estimated from the outer dimensions if it is not specified.
+    If the volume is not specified, it is estimated from the outer dimensions.
     """
     diameter = float(getattr(component, "diameter", 0.0) or 0.0)
     if isinstance(component, Cable):

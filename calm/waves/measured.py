@@ -41,9 +41,10 @@ _BY_HEAVE = {
     "panels": ((0.54, 0.9), (0.7, 1.05)),
     "follows": ((0.44, 0.7), (0.6, 0.9)),
 }
-"""Bands in low and in high seas for each method of computing heave. They enclose the observed
-ratios of computed to measured tension: `filtered` 1.04 to 1.71 in low and 0.93 to 1.34 in high
-seas, `panels` 1.13 to 1.81 and 0.96 to 1.40, `follows` 1.44 to 2.24 and 1.12 to 1.66.
+"""Bands in low and in high seas for each method of computing heave. The bands enclose the observed
+ratios of computed to measured tension. For `filtered`, these ratios are 1.04 to 1.71 in low seas
+and 0.93 to 1.34 in high seas; for `panels`, 1.13 to 1.81 and 0.96 to 1.40; for `follows`, 1.44 to
+2.24 and 1.12 to 1.66.
 """
 
 

@@ -80,9 +80,10 @@ with the largest standard deviation.
 
 
 class CutOffs(NamedTuple):
-    """Responses to a sea state, computed up to three cut-off frequencies of the waves.
+    """Responses to a sea state for three cut-off frequencies of the waves.
 
-    These are the cut-off frequency itself, half this frequency, and twice this frequency.
+    The fields are the responses for the cut-off frequency of the analysis, for half this frequency,
+    and for twice this frequency.
     """
 
     full: WaveResponse
@@ -101,9 +102,9 @@ class MooringInSea:
     cut_off : cut-off frequency of the waves [rad/s]
     band : range of measured divided by computed standard deviations of tension; None for a line
         below the surface and for a float with a prescribed response
-    follower_std : standard deviation of the tension below the float if it followed every wave [N].
-        This is computed only in the highest sea state; None in other sea states and for a line
-        below the surface
+    follower_std : standard deviation of the tension below the float if the float followed every
+        wave [N]; computed only in the highest sea state, and None for other sea states and for a
+        line below the surface
     pitch_std : standard deviation of the pitch of the float [degrees]; None if unknown
     moments : spectral moments of the tension in the pieces, for the cut-off frequency, half this
         frequency, and twice this frequency

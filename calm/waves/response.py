@@ -140,9 +140,9 @@ class _Afloat(NamedTuple):
 
     The four degrees of freedom are the translations of the attachment point of the line, and pitch.
     `held` (f, 4, 4) is the stiffness and `pushed` (f, 4) the force per metre of elevation. Drag
-    acts at p points: `ways` (p, 3, 4) gives their motion by the degrees of freedom, and `water` (f,
-    p, 3) the velocity of the water there. The bottom has a rotational drag with the factor
-    `turning`, relative to the `slope` (f,) of the waves.
+    acts at p points: `ways` (p, 3, 4) gives the motion of these points per unit of each degree of
+    freedom, and `water` (f, p, 3) the velocity of the water there. The bottom has a rotational drag
+    with the factor `turning`, relative to the `slope` (f,) of the waves.
     """
 
     held: Complexes
@@ -271,7 +271,7 @@ def respond(
 def _axes(line: LumpedLine) -> Floats:
     """Return (n, 3, 3) unit vectors at the nodes.
 
-    They lie along the line, along the mean normal flow, and normal to both.
+    The vectors lie along the line, along the mean normal flow, and normal to both.
     """
     t = line.tangent
     across = line.current - (line.current * t).sum(1, keepdims=True) * t

@@ -419,7 +419,8 @@ def test_limits_are_told_as_used_with_default_and_source(calm, write_mooring):
     plain = limits(json.loads(calm("check", file, "--json", "-").out))
     assert plain["safety_factor.steel"] == {
         "mooring": "Test", "name": "safety_factor.steel", "value": 3.0, "default": 3.0,
-        "source": "UFC 4-159-03, table 3-7: 3 on new breaking strength of chain and wire",
+        "source": "UFC 4-159-03, table 3-7: a factor of 3 on the breaking strength of new chain "
+        "and wire",
         "departs": False,
     }  # fmt: skip
     assert not any(one["departs"] for one in plain.values())

@@ -140,7 +140,7 @@ def test_optional_values_are_listed_as_comments(calm, folder):
     done = calm("check", "m.yaml", "--missing", "-o", "block.yaml")
     assert done.err.rstrip().endswith("block.yaml written; it contains only comments")
     block = (folder / "block.yaml").read_text(encoding="utf-8")
-    assert block.startswith("# No check lacks a value.\n")
+    assert block.startswith("# All values that the checks need are known.\n")
     assert "#   swivel-13:\n#     working_load:  # estimated: at least 9.81 kN\n" in block
     assert "#   spacer:\n#     mass:  # in air; the total mass is a lower bound" in block
     assert "#   sbe37:  # sbe37 1 and 2\n#     grip:  # without it, clamp grip is not" in block

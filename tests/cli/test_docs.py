@@ -118,7 +118,7 @@ def test_without_a_browser_the_address_is_named(calm, site, monkeypatch):
     monkeypatch.setattr(webbrowser, "open", lambda _: False)
     done = calm("docs", "--open")
     assert done.code == 2
-    assert f"no browser could be opened; the page is {site / 'index.html'}" in done.err
+    assert f"no browser could be opened; the page is in {site / 'index.html'}" in done.err
 
 
 def test_an_installation_without_the_manual(calm, monkeypatch):

@@ -495,7 +495,7 @@ legs:
     assert run("run", file) == 3
     told = capsys.readouterr().err
     assert "no-equilibrium: Legs" in told
-    assert "140.00 m long in all, but the ends are held 200.00 m apart" in told
+    assert "140.00 m long in total, but the ends are held 200.00 m apart" in told
 
 
 def test_rope_that_would_surface_is_told_by_the_float_of_its_leg(
@@ -555,7 +555,7 @@ def test_an_anchor_that_slides_by_itself_is_a_mistake(tmp_path: Path) -> None:
     """The angle of friction of 0.6 is 31 degrees."""
     text = SLOPE.replace("slope: 10 deg", "slope: 32 deg")
     with pytest.raises(
-        InputError, match=r"slides by its own weight .* it holds on slopes of less than 31°"
+        InputError, match=r"slides under its own weight .* it holds on slopes of less than 31°"
     ):
         load(tmp_path / "slope.yaml", text=text)
 
@@ -845,7 +845,7 @@ def test_a_line_lies_on_the_plane_of_a_grid(tmp_path: Path) -> None:
             for one in (grid, plane)
         )
         assert there == pytest.approx(where, abs=0.3 + off)
-        said = [each for each in grid.warnings if "lies on the plane" in each]
+        said = [each for each in grid.warnings if "treated as a plane" in each]
         assert len(said) == (bowl > 0.0)
         told = float(re.search(r"up to ([\d.]+) m there", said[0])[1]) if said else 0.0
         assert told == pytest.approx(bowl * grid.anchor.grounded_length**2, rel=0.05, abs=0.06)
@@ -873,7 +873,7 @@ def test_an_export_says_that_its_seabed_is_level(
     file.write_text(SLOPE)
     assert run("export", file, "--to", "moordyn", "-o", tmp_path / "slope.txt") == 0
     told = capsys.readouterr().err
-    assert "not exported: the slope of the seabed: it is level" in told
+    assert "not exported: the slope of the seabed: the exported seabed is level" in told
     depths = [anchor.depth for anchor in load(file).solve().anchors]
     written = (tmp_path / "slope.txt").read_text()
     deepest = next(line for line in written.splitlines() if "WtrDpth" in line)

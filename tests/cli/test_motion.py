@@ -243,6 +243,13 @@ def test_readings_that_cannot_be_and_pressures_of_the_air_are_named(calm, given,
         (folder / "e.nc").unlink()
 
 
+def test_depths_recorded_as_pressures_are_named(calm, given, truth):
+    for file, said in (("p.csv", False), (given("m.csv", values=truth[1]), True)):
+        done = calm(*COMMAND, "--pressures", file, "-o", f"{file}.nc")
+        text = " ".join((done.out + done.err).split())
+        assert ("0.9 % low, as depths in metres recorded as dbar would be" in text) == said
+
+
 def test_flags_that_leave_no_pressure_are_named(calm, given, truth, folder):
     attributes = {"standard_name": "sea_water_pressure", "units": "dbar"}
     bad = np.full(truth[1].shape, 4, np.int8)

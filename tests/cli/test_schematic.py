@@ -15,7 +15,7 @@ def test_it_stands_above_the_table(calm, write_mooring):
     assert drawing.startswith("Test\n100.0 m of water\n")
     for sign in ("~~~~~~~~~~ sea surface", " (   )     top float", "   ├─[#]     logger"):
         assert f"\n{sign}" in drawing
-    assert "as solved in the current." in drawing
+    assert drawing.endswith("at the upper end of each part, as\nsolved in the current.")
     assert "horizontal" in table
     assert max(map(len, done.out.splitlines())) <= 80
     assert not any(line.endswith(" ") for line in done.out.splitlines())

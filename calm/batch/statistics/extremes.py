@@ -145,8 +145,8 @@ def _censored(statuses: Mapping[str, int]) -> str:
             ended[ending_of(status)] += count
     outcomes = " and ".join(f"{count} {ending.value}" for ending, count in ended.items() if count)
     return outcomes and (
-        f"of the profiles with a current, {outcomes}; the largest values may be among these, and "
-        "levels from the remaining profiles would be too low"
+        f"the profiles with a current include {outcomes}; these may contain the largest values, "
+        "and levels from the other profiles would be too low"
     )
 
 
@@ -169,16 +169,16 @@ def _by_maxima(
     if len(maxima) < LEAST_MAXIMA:
         return LevelsRefused(
             "gev",
-            f"annual maxima of {LEAST_MAXIMA} whole years are needed; {len(maxima)} of {count} in "
-            f"the record {'has' if len(maxima) == 1 else 'have'} at least {100 * WHOLE:.0f} % of "
-            "the profiles",
+            f"annual maxima of {LEAST_MAXIMA} whole years are needed; years in the record with at "
+            f"least {100 * WHOLE:.0f} % of their profiles: {len(maxima)} of {count}",
         )
     if maxima.max() == maxima.min():
         return LevelsRefused("gev", f"the {len(maxima)} annual maxima are all equal")
     tail = tails.fit_maxima(maxima)
     rules = (
-        f"maxima of {len(maxima)} years of 365.25 days, counted from the first profile, "
-        f"with at least {100 * WHOLE:.0f} % of their profiles{_gaps(time, values, step)}"
+        f"{len(maxima)} maxima, one from each year that has at least {100 * WHOLE:.0f} % of its "
+        "profiles; the first year begins with the first profile, and a year has 365.25 days"
+        f"{_gaps(time, values, step)}"
     )
     growths = {period: -log(-log1p(-1.0 / period)) for period in _periods(years)}
     return _fit("gev", tail, 1.0, rules, growths)
@@ -200,8 +200,8 @@ def _by_peaks(
             return _over(percentile, threshold, peaks, years, _gaps(time, values, step))
     return LevelsRefused(
         "pot",
-        f"{LEAST_PEAKS} independent peaks are needed; no threshold from the {THRESHOLDS[0]:.0f} % "
-        f"to the {THRESHOLDS[-1]:.0f} % quantile leaves more than {most}",
+        f"{LEAST_PEAKS} independent peaks are needed; with thresholds from the "
+        f"{THRESHOLDS[-1]:.0f} % to the {THRESHOLDS[0]:.0f} % quantile, at most {most} were found",
     )
 
 
@@ -212,9 +212,10 @@ def _over(
         return LevelsRefused("pot", f"the {len(peaks)} peaks are all equal")
     tail, rate = tails.fit_excesses(peaks, threshold), len(peaks) / years
     rules = (
-        f"{len(peaks)} peaks over the {percentile:.0f} % quantile, the highest quantile from "
-        f"{THRESHOLDS[0]:.0f} % to {THRESHOLDS[-1]:.0f} % that leaves {LEAST_PEAKS} clusters; "
-        f"clusters are separated by the intervals between exceedances (Ferro and Segers 2003){gaps}"
+        f"{len(peaks)} peaks, one from each cluster of values above the {percentile:.0f} % "
+        f"quantile; of the quantiles from {THRESHOLDS[-1]:.0f} % to {THRESHOLDS[0]:.0f} %, this is "
+        f"the highest that gives at least {LEAST_PEAKS} clusters; the clusters are found from the "
+        f"intervals between exceedances (Ferro and Segers 2003){gaps}"
     )
     growths = {period: log(rate * period) for period in _periods(years) if rate * period > 1.0}
     return _fit("pot", tail, rate, rules, growths)
@@ -227,7 +228,7 @@ def _gaps(time: Times, values: Column, step: np.timedelta64) -> str:
         return ""
     return (
         f"; {100 * missing:.1f} % of the time between the first and the last profile is "
-        "missing, which the intervals do not take into account"
+        "missing, and the levels and their intervals assume that no storm occurred then"
     )
 
 

@@ -158,8 +158,8 @@ def _inside(shape: float) -> float:
     for bound in SHAPES:
         if abs(shape - bound) <= _AT_BOUND:
             raise NotFitted(
-                f"the fitted shape is {shape:.2f}, at the limit of the search; the likelihood may "
-                "be larger beyond it"
+                f"the fitted shape is {shape:.2f}, at a limit of the search; a shape outside the "
+                "search range may fit better"
             )
     return float(shape)
 

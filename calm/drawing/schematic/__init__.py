@@ -62,7 +62,7 @@ def schematic_svg(file: MooringFile, result: AnyResult | None = None) -> str:
 def schematic_sheets(file: MooringFile, result: AnyResult | None = None) -> list[str]:
     """Draw the picture of `schematic_svg` on several sheets, each of which is legible on A4.
 
-    The picture is divided between parts.
+    The picture is cut only between parts, never through a part.
     """
     return _drawn(schematic_of(file, result), _PRINTED_HEIGHT / _LEAST_SCALE)
 

@@ -201,9 +201,9 @@ def _subtitle(file: MooringFile) -> str:
     return " · ".join(facts)
 
 
-_NOT_TO_SCALE = "Not to scale. Depth and height are at the upper end,"
+_NOT_TO_SCALE = "Not to scale. Depth and height are given at the upper end of each part,"
 _SOLVED = f"{_NOT_TO_SCALE} as solved in the current."
-_UPRIGHT = f"{_NOT_TO_SCALE} upright and unstretched."
+_UPRIGHT = f"{_NOT_TO_SCALE} with the line upright and unstretched."
 _UNKNOWN = "Not to scale. Depths are unknown until the line is solved."
 
 

@@ -50,12 +50,12 @@ _NEED = ("float", "release", "anchor", "instrument")
 def elevation(
     result: AnyResult, width: int, height: int, overlays: Sequence[Shape] = ()
 ) -> list[Text]:
-    """Draw a line in the vertical plane of its excursion or of the tow.
+    """Draw a side view of a line, in the vertical plane of its excursion or of the tow.
 
     Distances are from the anchor towards the free end, or from the ship backward. Distances and
     depths have different scales. The line in still water is dotted. If the drawing is at least 50
-    cells wide, the names of parts are shown. `overlays` are shapes in other environments or of
-    other designs, which are dashed.
+    cells wide, the names of parts are shown. `overlays` are drawn dashed; they are shapes in
+    other environments, or of other designs.
     """
     side = line_picture.elevation_of(result, overlays)
     moored = not result.towed

@@ -73,9 +73,10 @@ class ComponentMaker:
             and _TOO_WIDE * (mass - weight / self.gravity) < CATALOGUE_DENSITY * area
         ):
             component.guesses["diameter"] = (
-                "as in the file, but inconsistent: one metre displaces "
-                f"{CATALOGUE_DENSITY * area:.3g} kg of water, but has a mass of {mass:.3g} kg and "
-                f"a weight in water of {weight:.3g} N"
+                "as in the file, although one metre of this diameter displaces "
+                f"{CATALOGUE_DENSITY * area:.3g} kg of water; the mass of {mass:.3g} kg and the "
+                f"weight in water of {weight:.3g} N imply only "
+                f"{mass - weight / self.gravity:.3g} kg"
             )
         self._stretch(component, definition, area - bore)
         self._drop(definition)
@@ -90,7 +91,8 @@ class ComponentMaker:
         if not stiffness and tension is not None:
             stiffness = tension.at(0.01) / 0.01
             component.guesses["stiffness"] = (
-                "the file has a curve; this is the tension at a strain of 0.01, divided by 0.01"
+                "the file has a curve of tension against strain; the stiffness is the tension at a "
+                "strain of 0.01, divided by 0.01"
             )
         if stiffness > 0.0:
             component.figures["stiffness"] = stiffness
@@ -179,9 +181,7 @@ class ComponentMaker:
         component = ImportedComponent(name, kind, figures)
         if not afloat:
             figures["length"] = 0.0
-            component.comment = (
-                "WHOI Cable treats this body as a point, so the line ends at its depth."
-            )
+            component.comment = "The length is 0, because WHOI Cable treats this body as a point."
         elif kind == "body":
             component.hull = hull
         figures |= {"mass": mass, "volume": whole}
@@ -209,7 +209,7 @@ class ComponentMaker:
     def _drop(self, definition: CableDefinition) -> None:
         found = [key for key in _DYNAMICS if key in definition.values]
         what = ", ".join({"ei": "EI", "gj": "GJ"}.get(key, key) for key in found)
-        remark = Remark(definition.name, f"bending stiffness, added mass and the like ({what})")
+        remark = Remark(definition.name, f"properties that CALM does not use ({what})")
         if found and remark not in self.dropped:
             self.dropped.append(remark)
 

@@ -169,7 +169,7 @@ class CableLayout:
                 if start <= height < end or (item is made[-1] and height >= end):
                     item.clamp(clamped, min(max(end - height, 0.0), item.extent))
             item.guess = (
-                "the drag was computed at the depth of this part in the upright line"
+                "the drag was computed for the depth of this part when the line is upright"
                 if len(made) > 1
                 else ""
             )
@@ -181,7 +181,8 @@ class CableLayout:
                 for item in made:
                     item.guess = (
                         item.guess
-                        or f"the file has a table of {key} over speed; this is the value at {speed}"
+                        or f"the file has a table of {key} against speed; this is the value at "
+                        f"{speed}"
                     )
         return made
 
@@ -265,7 +266,7 @@ class CableLayout:
             return [], model.joined_at(at), False
         values, token = at.values, at.token
         if "node" in values:
-            raise token.refuse("the layout has a loop: this end is attached to a node of the line")
+            raise token.refuse("the layout has a loop: this end of the line is attached to a node")
         x, y, z = (values.number(key) for key in ("x", "y", "z"))
         if "anchor" not in values:
             buoy = self._buoy(at, afloat=self.problem.kind == "surface")

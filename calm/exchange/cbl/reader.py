@@ -47,8 +47,8 @@ _HEADS = re.compile(
 )
 _FORCES = ("x-force", "y-force", "z-force", "x-thrust", "y-thrust", "z-thrust")
 _NOTE = (
-    "cn and ct are Cdn and Cdt of WHOI Cable: both programs refer Cdn to the diameter, and Cdt to "
-    "the surface area. See `calm docs import-cable`."
+    "cn and ct are Cdn and Cdt of WHOI Cable, unchanged: in both programs, Cdn refers to the area "
+    "diameter × length, and Cdt to the surface area. See `calm docs import-cable`."
 )
 _FINEST = 1e-4  # tolerance of the levels, as a share of the fastest current
 _HALVINGS = 8
@@ -162,7 +162,7 @@ def _refuse_other_shapes(problem: CableProblem) -> None:
     anchored = ["anchor" in end.values for end in ends]
     if any("node" in end.values for end in ends):
         raise ends[1].token.refuse(
-            "the layout has a loop: this end is attached to a node of the line"
+            "the layout has a loop: this end of the line is attached to a node"
         )
     if kind != "towing" and not any(anchored):
         raise ends[0].token.refuse("neither end is an anchor, so the line drifts")
@@ -274,9 +274,9 @@ def _gridded_current(
 ) -> _Grid | None:
     """Read the currents of a current file; return None if the file does not exist.
 
-    The file begins with step, start and count of time, depth, x and y. The speeds in x, y and z
-    follow, with depth varying fastest, then x, then y, then time. Parts that are not used are added
-    to `dropped`.
+    The file begins with the step, start and count for each of time, depth, x and y. The speeds in
+    x, y and z follow, with depth varying fastest, then x, then y, then time. Parts that are not
+    used are added to `dropped`.
     """
     folder = problem.path.parent
     path, outside = folder / value.text, problem.options.allow_include
@@ -290,7 +290,9 @@ def _gridded_current(
     steps, starts, counts = (numbers[i:12:3] for i in range(3))
     sizes = [round(count) for count in counts]
     if numbers.size < 12 or min(sizes) < 1 or not np.all(steps):
-        raise refused(path, "must begin with step, start and count of time, depth, x and y")
+        raise refused(
+            path, "must begin with the step, start and count for each of time, depth, x and y"
+        )
     if np.prod([float(size) for size in sizes]) * 3 > _MOST:
         raise refused(path, f"holds more than {_MOST} speeds")
     times, depths, easts, norths = sizes
@@ -304,9 +306,9 @@ def _gridded_current(
     )
     here = _at_zero(_at_zero(_at_zero(speeds, time), y), x)
     if times > 1:
-        dropped.append(model.Remark("current-file", "times after the first"))
+        dropped.append(model.Remark("current-file", "currents at times after the first"))
     if np.ptp(speeds, axis=(1, 2)).any():
-        what = "variation in the horizontal; the profile at the anchor is used"
+        what = "horizontal variation of the current; the profile at the anchor is used"
         dropped.append(model.Remark("current-file", what))
     order = np.argsort(depth)
     return depth[order], here[order]

@@ -86,7 +86,8 @@ def write_cbl(exported: ExportedDesign) -> Exported:
     problem = _Problem(density)
     if max(row[4] for row in design.levels) - min(row[4] for row in design.levels) > 1e-9:
         lost.append(
-            "the density profile: weights and drags are those at the depths of the upright line"
+            "the density profile: weights and drags are computed for the depths of the parts when "
+            "the line is upright"
         )
     parts = list(design.parts)
     if design.tow is None:
@@ -102,13 +103,13 @@ def write_cbl(exported: ExportedDesign) -> Exported:
     floating = design.afloat
     if floating and not design.has_draft:
         lost.append(
-            "the full drag of the float, or its unknown draft: WHOI Cable computes the draft"
+            "the constant drag of the float: WHOI Cable computes the draft, and the drag from it"
         )
     if design.tow is not None and design.tow.height:
         lost.append("the height of the sheave: in WHOI Cable the line begins at the surface")
     if floating:
         lost.append(
-            "the increase of the drag of the float with its draft: Cdn gives the drag at the "
+            "the dependence of the float's drag on its draft: Cdn gives the drag at the "
             "present draft"
         )
     elif design.tow is None:

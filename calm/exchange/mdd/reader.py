@@ -69,7 +69,8 @@ def read_mdd(path: Path) -> model.ImportedDesign:
         raise refused(path, str(error)) from None
     if design.record is not None:
         design.notes.append(
-            "The current is the first profile of the record in the folder of this file."
+            "The current is the first profile of the current record, which is in the folder of "
+            "this mooring file."
         )
     if towed:
         _lay_tow(design, elements, variables, path)
@@ -110,7 +111,10 @@ def _lay_tow(
     design.tow = model.ImportedTow(speed, bearing_of(east, north))
     height = variables.first("afh")
     if height > 0.0:
-        what = f"the A-frame of {height:g} m, which Mooring Design & Dynamics only draws"
+        what = (
+            f"the A-frame height of {height:g} m, which Mooring Design & Dynamics uses only for "
+            "drawings"
+        )
         design.dropped.append(model.Remark("afh", what))
 
 
@@ -122,8 +126,11 @@ def _clamp(
     by_share = len(host) == len(share) == len(clamped)
     by_height = len(height) == len(clamped)
     if not by_share and not by_height:
-        counts = f"`Jobj` has {len(host)}, `Pobj` {len(share)}, `ZCO` {len(height)}"
-        raise refused(path, f"{len(clamped)} clamps need as many positions: {counts}")
+        counts = f"`Jobj` has {len(host)}, `Pobj` {len(share)} and `ZCO` {len(height)}"
+        message = (
+            f"the number of positions must equal the number of clamps, {len(clamped)}: {counts}"
+        )
+        raise refused(path, message)
     for i, element in enumerate(clamped):
         above = _by_height(design.items, height[i]) if by_height else None
         place, guess = above, "the position follows from the height `ZCO` alone"

@@ -47,7 +47,7 @@ def read_water(
     if densities is not None and densities.shape[1] > 1:
         if not np.all(np.isfinite(density)):
             raise ValueError("`rho` has gaps in its first profile")
-        what = f"the first of {densities.shape[1]} profiles, because a mooring has only one"
+        what = f"the first of {densities.shape[1]} profiles; a mooring has only one density profile"
         guessed.append(model.Remark("environment.density", what))
     order = np.arange(levels.size) if towed else np.argsort(seabed - levels, kind="stable")
     depth = np.sort(levels) if towed else (seabed - levels)[order]

@@ -65,9 +65,9 @@ def write_mdd(exported: ExportedDesign) -> Exported:
         lost.append("wind")
     if design.afloat:
         lost.append(
-            "the hull of the float: in Mooring Design & Dynamics draft and drag are "
-            "proportional to the used "
-            "buoyancy; its Cd gives the same drag as in CALM in this current"
+            "the hull of the float: in Mooring Design & Dynamics, draft and drag are proportional "
+            "to the used buoyancy; the exported Cd gives the drag that CALM computes in this "
+            "current"
         )
     losses = design.losses(lost)
     variables["lost"] = _texts([f"{design.name}, exported by CALM without:", *losses])
@@ -104,14 +104,17 @@ def _size(part: ExportedPart, lost: list[str]) -> tuple[float, float, float]:
         return 0.0, across, part.kn / (_HALF_DENSITY * math.pi / 4.0 * across**2)
     if part.directional and part.length > 0.0:
         if part.kt > 0.0:
-            lost.append("drag on the ends of cylinders (ct), and of bodies along the line (kt)")
+            lost.append(
+                "drag on the ends of cylinders (ct), and drag of bodies along the line (kt)"
+            )
         if isinstance(component, Cylinder):
             across = component.diameter
             return across, 0.0, part.kn / (_HALF_DENSITY * across * part.length)
         return part.area() / part.length, 0.0, 1.0
     if not isinstance(component, Cylinder):
         lost.append(
-            "shapes of bodies: each is written as a sphere or cylinder of equal drag with Cd 1"
+            "shapes of bodies: each body is written as a sphere or cylinder with Cd = 1 and the "
+            "same drag"
         )
     return 0.0, math.sqrt(4.0 * part.area() / math.pi), 1.0
 

@@ -19,8 +19,8 @@ _FREE = ("free", "connect", "point")
 _CURRENTS = "current_profile.txt"
 _STEADY = ("1", "3")  # values of `Currents` for a steady current
 _NEAR, _NEAR_AT_LEAST = 0.05, 2.0
-"""Maximum depth of an upper end that is treated as attached to a float, relative to the water
-depth, and in metres if that is more.
+"""Maximum depth of an upper end that is treated as attached to a float: a share of the water depth,
+or a depth [m], whichever is greater.
 """
 
 _ABOVE = 0.01  # m: a point higher than this is held above the water
@@ -150,9 +150,11 @@ def read_moordyn(path: Path) -> model.ImportedDesign:
     water = model.ImportedWater(depth, density, gravity, current)
     design = model.ImportedDesign("MoorDyn", path.stem, [], water, notes=[_NOTE])
     if kind not in ("0", "none") and not current:
-        lacks = f"without {_CURRENTS} in its folder" if kind in _STEADY else "which vary in time"
+        lacks = (
+            f"but {_CURRENTS} is missing" if kind in _STEADY else "for currents that vary in time"
+        )
         design.dropped.append(
-            model.Remark("current", f"`Currents` {kind}, {lacks}; still water is assumed")
+            model.Remark("current", f"`Currents` is {kind}, {lacks}; still water is assumed")
         )
     if options.get("wavekin", "0") not in ("0", "none"):
         design.dropped.append(model.Remark("waves", f"`WaveKin` {options['wavekin']}"))
@@ -258,7 +260,7 @@ def _figures(point: _Row) -> dict[str, model.FigureOrWord]:
 def _upper_end(top: _Row) -> model.ImportedPiece:
     """Convert the point at the upper end to a float.
 
-    It must be free, or be held at the surface with enough volume to float.
+    The point must be free, or be held at the surface with enough volume to float.
     """
     figures = _figures(top)
     if _lift(figures) <= 0.0:
@@ -272,7 +274,7 @@ def _upper_end(top: _Row) -> model.ImportedPiece:
 
 
 def _anchor_of(point: _Row, depth: float) -> model.ImportedComponent:
-    """Create an anchor, as high as its point is above the seabed."""
+    """Create an anchor whose height is the height of its point above the seabed."""
     height = depth + point.number("z")
     return model.ImportedComponent("anchor", "anchor", {"length": height} if height > 1e-6 else {})
 
@@ -361,9 +363,7 @@ def _heading(word: str, section: str) -> str:
 
 
 _ON_THE_BED = 0.05
-"""Maximum height of a fixed point above the seabed, relative to the water depth, at which the point
-is an anchor.
-"""
+"""Height above the seabed, relative to the water depth, up to which a fixed point is an anchor."""
 
 
 def _lay_net(file: _File, path: Path) -> None:

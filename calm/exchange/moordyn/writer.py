@@ -23,12 +23,12 @@ _CURRENTS = "current_profile.txt"
 """Name of the current file, which MoorDyn reads from the folder of the input file."""
 
 _RIGID = 1e7  # N: EA of parts that do not stretch; stiffer lines need shorter time steps
-_SHORT = 0.5  # m: a shorter rigid part has a lower EA in proportion, for the same reason
-_OWN = 0.5  # share of a float's mass that the length below its point has
-_LENGTH, _MOST = 20.0, 60  # m, and a number: length between two points, most lengths of a cable
+_SHORT = 0.5  # m: the EA of a shorter rigid part is reduced in proportion, for the same reason
+_OWN = 0.5  # share of the mass of a float that is assigned to the length below its point
+_LENGTH, _MOST = 20.0, 60  # length between two points [m]; maximum number of lengths of a cable
 _CLOSE = 0.5  # m: a clamp nearer to a point is moved to the point
 _SEGMENTS = 4  # number of segments of a length
-_LEAST = 1e-3  # kg/m: least mass, and least mass of displaced water, of a line type
+_LEAST = 1e-3  # kg/m: minimum mass of a line type, and of the water that it displaces
 
 
 @dataclass
@@ -54,7 +54,7 @@ class _Length:
 class _System:
     """Line types, points and lines of the file, collected leg by leg, each from its lower end up.
 
-    `here` is the point at the upper end so far, to which the next length is attached.
+    `here` is the point to which the next length is attached.
     """
 
     density: float
@@ -138,7 +138,7 @@ def write_moordyn(exported: ExportedDesign) -> Exported:
     if first.tow is not None:
         raise UsageError("tows cannot be written for MoorDyn, only moorings")
     system = _System(first.mean_density, first.gravity)
-    lost = ["joints between adjacent rigid pieces, which become one stiff length"]
+    lost = ["joints between adjacent rigid pieces: the pieces become one stiff length"]
     for design in lines:
         _lay_line(system, design)
     if any(first.wind):
@@ -189,8 +189,8 @@ def _lay_line(system: _System, design: ExportedLine) -> None:
 def _lay(system: _System, part: ExportedPart, path: Floats) -> None:
     """Add a cable or chain from its lower end up, divided at its clamps.
 
-    It is also divided into short lengths, because MoorDyn starts from the shape of each length in
-    still water.
+    The cable or chain is also divided into short lengths, because MoorDyn starts from the shape of
+    each length in still water.
     """
     load = PartLoad(system.density)
     load.add(part)

@@ -87,7 +87,7 @@ SheetRows = list[list[str]]
 
 @dataclass(frozen=True)
 class ColumnUnit:
-    """The unit of a column: its factor to SI, and whether values are per metre.
+    """The unit of a column: its conversion factor to SI, and whether values are per metre.
 
     `by_mass` is true if forces are given in kilograms or pounds.
     """
@@ -160,7 +160,7 @@ def unit_of_heading(heading: str, what: str) -> ColumnUnit | None:
 
 
 def _unit(text: str, what: str) -> ColumnUnit | None:
-    """Parse a text as a unit of the quantity `what`; return None if it is no such unit."""
+    """Parse a text as a unit of the quantity `what`; return None if it is not such a unit."""
     dimension = _DIMENSIONS.get(what, "")
     for each, scale, by_mass in (
         (dimension, 1.0, False),
@@ -279,7 +279,7 @@ def decimal_sign(cells: Iterable[tuple[str, str]]) -> tuple[str, str]:
         Both the point and the comma are decimal symbols, or numbers such as `1,250` are ambiguous.
     """
     seen: dict[str, str] = {}
-    doubtful: dict[str, tuple[str, str]] = {}  # where, and the digits
+    doubtful: dict[str, tuple[str, str]] = {}  # position, and digits
     for place, cell in cells:
         found = None if isinstance(cell, WorkbookNumber) else _NUMERAL.match(_BEFORE.sub("", cell))
         if found is None or _RATIO.match(_BEFORE.sub("", cell)):

@@ -11,7 +11,7 @@ from calm.physics.seawater import REFERENCE_DENSITY
 from calm.units import KILOGRAM_FORCE
 
 _USUAL = {"cable": 1.3, "chain": 2.75, "sphere": 0.5, "cylinder": 1.2}
-_ROUND = 1.5  # times its diameter: a float no longer is a sphere
+_ROUND = 1.5  # maximum ratio of length to diameter of a float that is treated as a sphere
 _HALF_DENSITY = 0.5 * REFERENCE_DENSITY
 
 
@@ -78,11 +78,12 @@ def _check_lift(row: ListRow, kind: str, across: float, length: float) -> None:
     if lift <= most:
         return
     kilograms = (
-        f"lifts {lift / KILOGRAM_FORCE:.4g} kg but displaces only {most / KILOGRAM_FORCE:.4g} kg"
+        f"displaces only {most / KILOGRAM_FORCE:.4g} kg of water, so it cannot lift "
+        f"{lift / KILOGRAM_FORCE:.4g} kg"
     )
     if row.count > 1 and lift <= row.count * most:
         row.refuse(
-            f"a piece {kilograms}; if the value is for all {row.count}, name the column `total`"
+            f"each piece {kilograms}; if the value is for all {row.count}, name the column `total`"
         )
     else:
         row.guesses["buoyancy"] = f"as in the list, although the piece {kilograms}"

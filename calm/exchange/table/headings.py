@@ -76,7 +76,7 @@ _LINES = r"(length|lange|laenge|longueur|longitud|rope|wire|line|cable|chain|sei
 _BESIDE = re.compile(
     rf"\b{_LINES}\w*\b.*\b(below|above|beneath|under|between|to next|unterhalb|darunter|oberhalb"
     r"|daruber|zwischen|dessous|dessus|entre|debajo|encima)\b"
-)  # length of a line listed in the row of another piece, not of that piece
+)  # length of a line that is listed in the row of another piece
 _ALONG = re.compile(r"tangent|axial")  # drag along the piece, which has a column of its own
 _RUNNING = re.compile(r"cumul|kumul|acumul|running")
 _FROM_AN_END = re.compile(rf"(distance|abstand|distancia).*{_END}|(cumul|kumul|acumul|running)")
@@ -87,7 +87,7 @@ _MEASURES = {"length", "buoyancy", "weight", "mass"}
 
 @dataclass(frozen=True)
 class ListColumn:
-    """A column of a list: its index, its heading, and the factor from its numbers to SI.
+    """A column of a list: its index, its heading, and its conversion factor to SI.
 
     Attributes
     ----------
@@ -179,7 +179,7 @@ def headings_of(rows: SheetRows, given: Mapping[str, str]) -> ListHeadings | Non
 
 
 def check_given(sheets: Mapping[str, SheetRows], given: Mapping[str, str], path: Path) -> None:
-    """Check that `--columns` refers to known columns and to headings of the list.
+    """Check that `--columns` names known columns, and headings that occur in the list.
 
     Parameters
     ----------
@@ -210,7 +210,7 @@ def _columns(row: list[str], given: Mapping[str, str], below: SheetRows) -> dict
     found: dict[str, ListColumn] = {}
     plain = [_plain(cell) for cell in row]
     if any(_SPANISH.search(cell) for cell in plain):
-        plain = [re.sub(r"^nombre\b", "name", cell) for cell in plain]  # a French count
+        plain = [re.sub(r"^nombre\b", "name", cell) for cell in plain]  # in French, a count
     taken: set[int] = set()
     for what, heading in given.items():
         wanted = _plain(heading)
@@ -265,7 +265,8 @@ def _worded(below: SheetRows, index: int) -> bool:
 def _resolve(found: dict[str, ListColumn]) -> None:
     """Resolve ambiguous headings.
 
-    A height is used as a missing length. A weight is the weight in air if there is also a buoyancy.
+    If the list has no lengths, its heights are used as lengths. Weights are weights in air if the
+    list also has buoyancies.
     """
     plain = {what: _plain(column.heading) for what, column in found.items()}
     tall = r"(height|hauteur|hohe|altura)\b(?!.*(bottom|btm|fond|grund|above))"
@@ -363,7 +364,8 @@ def cell_of(row: list[str], column: ListColumn | None) -> str:
 def decimals_of(cells: SheetRows, headings: ListHeadings, problems: list[str]) -> tuple[str, str]:
     """Find the decimal symbol in the columns of numbers; also return a remark on the commas.
 
-    A contradiction is added to `problems`; both results are then empty.
+    If the numbers are contradictory or ambiguous, a message is added to `problems`, and both
+    results are empty.
     """
     figures = [column for what, column in headings.columns.items() if what not in WORDS]
     try:

@@ -17,18 +17,18 @@ from calm.exchange.table.rows import ListRow, rows_of, weights_as_buoyancy
 from calm.units import KILOGRAM_FORCE
 from calm.whole_file import read_content
 
-# columns that an element does not have, whatever the headings are
+# columns that are ignored in a library, because an element has no such values
 _NOT_THEIRS = ("at", "count", "height", "depth")
-_A_METRE = 1e-6  # m: tolerance of the length of 1 m to which a line's figures apply
-_SHEETS = 3  # least number of sheets with headings in a library
+_A_METRE = 1e-6  # m: tolerance for the length of 1 m to which the values of a line refer
+_SHEETS = 3  # minimum number of sheets with headings in a library
 
 _LINES = ("wires", "chains")
-_NAME = 16  # bytes of a name if the file does not give them
-# numbers of figures behind a name: buoyancy, mass in air (newer versions), length, width, diameter,
+_NAME = 16  # bytes of a name, if the file does not give their number
+# numbers of values after a name: buoyancy, mass in air (newer versions), length, width, diameter,
 # Cd, material
 _FIGURES = (6, 7)
 _CENTIMETRE = 0.01
-_METRE = 100.0  # cm: the length of a line whose figures are per metre
+_METRE = 100.0  # cm: length of a line whose values are per metre
 
 
 Library = Mapping[str, ListRow]
@@ -38,7 +38,7 @@ Library = Mapping[str, ListRow]
 def read_library(path: Path) -> Library:
     """Read elements from `mdcodes.mat` of Mooring Design & Dynamics, or from a table or workbook.
 
-    If several elements have the same name, the first of them is used.
+    If several elements have the same name, the first element is used.
 
     Raises
     ------
@@ -98,7 +98,7 @@ def complete_rows(rows: Iterable[ListRow], library: Library, source: str) -> Non
 
 
 def _of_matrices(path: Path) -> list[ListRow]:
-    """Return the elements in character matrices, one in each row, as in `mdcodes.mat`."""
+    """Return the elements in character matrices with one element per row, as in `mdcodes.mat`."""
     variables = read_variables(path, [*GROUPS, "format"])
     entries = [
         entry

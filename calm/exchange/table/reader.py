@@ -30,7 +30,7 @@ from calm.files.components import FLEXIBLE_KINDS
 
 _NOTE = "A list has no data on the water and little data on drag. See `calm docs import-table`."
 _WATER = ("z", "U", "V", "W", "rho")  # headings of a sheet of Mooring Design & Dynamics
-_NAMES = 3  # least number of names in a list that has only names
+_NAMES = 3  # minimum number of names in a list that has only names
 
 
 def read_list(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
@@ -240,7 +240,7 @@ def _figure(row: list[str], index: int, path: Path) -> float:
 def _from_the_top(rows: list[ListRow], path: Path, design: model.ImportedDesign) -> list[ListRow]:
     """Sort rows from the top of the line down, with clamps after their piece.
 
-    The list may have either direction.
+    The list may run from the top down or from the bottom up.
     """
     pieces = [row for row in rows if "at" not in row.figures]
     if len(pieces) < 2:

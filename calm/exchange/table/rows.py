@@ -19,16 +19,16 @@ _COUNTED = re.compile(r"^\(?([2-9]|[1-9]\d)\s?[x\u00d7]\s?(?=\S)", re.I)  # 10x 
 _LENGTHS = re.compile(r"^\(?\d+\s?[x\u00d7]\s?\d+([.,]\d+)?\s?m\b", re.I)  # 2 x 200 m wire
 _ANCHOR_KINDS = re.compile(r"\banchors?\b|\bancre|\blest\b", re.I)
 _ENOUGH = {"length", "buoyancy", "weight"}  # a row with any of these keys is a piece
-_MOST = 1000  # largest count of a row
+_MOST = 1000  # maximum count of a row
 # m: largest diameter of a piece, and of a line, in a column without a unit
 _WIDEST, _WIDEST_LINE = 10.0, 0.5
-_FULL = 5.0  # largest area of a metre of line, in diameters
+_FULL = 5.0  # maximum ratio of the area of a line per metre to its diameter
 _METRES = re.compile(r"/\s*(\d+)")  # kg/100 m
-# figures that a line has per metre
+# values that are per metre for a line
 _SPREAD = ("buoyancy", "mass", "area", "drag_area", "tangential_area")
 ROLES = ("float", "instrument", "release", "connector")
-_TALLEST = 20.0  # m: greatest length of a float, release or anchor
-_FEWEST = 4  # number of pieces from which growing lengths are no coincidence
+_TALLEST = 20.0  # m: maximum length of a float, release or anchor
+_FEWEST = 4  # minimum number of pieces for which increasing lengths are not a coincidence
 _GROWN = 3.0  # m: longer than any usual fitting at the end of a line
 _SHARED = ("length", "buoyancy", "weight", "mass", "area", "drag_area", "tangential_area")
 _FITTING = 1.0  # m: a shorter connector is a fitting, not a rope
@@ -41,7 +41,7 @@ class ListRow:
     Attributes
     ----------
     metre : names of the values that are per metre
-    line : whether the row is a cable or chain; None if this is to be inferred from the name
+    line : whether the row is a cable or chain; if None, the name decides
     hint : advice on missing values
     problems : messages about mistakes
     """
@@ -80,7 +80,7 @@ class ListRow:
 
     @property
     def sinks(self) -> bool:
-        """Whether the row is a line, an anchor, or a part that sinks according to its name."""
+        """Whether the row is a part that sinks: a line, an anchor, a connector or a release."""
         named = is_called(self.name, "connector", "release")
         return named or self.is_line or self.is_anchor
 
@@ -105,12 +105,12 @@ def rows_of(
     *,
     bare: Callable[[str], bool] = lambda name: False,
 ) -> list[ListRow]:
-    """Read the rows below the headings; sums and rows without values are added to `dropped`.
+    """Read the rows below the headings; rows with totals or without values are added to `dropped`.
 
     Parameters
     ----------
     guessed : list to which guesses are added
-    bare : function that returns whether a row with nothing but a given name is a piece, because a
+    bare : function that returns whether a row that contains only a name is a piece, because a
         library has the values
     """
     rows: list[ListRow] = []
@@ -180,7 +180,9 @@ def _row(cells: list[str], row: ListRow, known: dict[str, ListColumn], decimal: 
             several = _METRES.search(f"{column.heading} {found.rest}")
             if several and not row.is_line:
                 figure *= int(several[1])
-                row.guesses[what] = "read as the value of the whole piece, because it is not a line"
+                row.guesses[what] = (
+                    "read as the value of the whole piece, because the piece is not a line"
+                )
         row.figures[what] = figure
         if found.tidied:
             row.guesses[what] = f"`{cell}` read as {found.value:g} {found.rest}".rstrip()
@@ -207,7 +209,7 @@ def _divide(row: ListRow, known: dict[str, ListColumn], guessed: list[model.Rema
 def growing_lengths(rows: Iterable[ListRow]) -> list[str]:
     """Return messages about cumulative or implausibly large lengths.
 
-    Lengths that increase from piece to piece along the whole line are taken to be distances from an
+    Lengths that increase from piece to piece along the whole line are treated as distances from an
     end of the line.
     """
     pieces = [row for row in rows if "at" not in row.figures and "length" in row.figures]
@@ -233,9 +235,8 @@ def growing_lengths(rows: Iterable[ListRow]) -> list[str]:
 def weights_as_buoyancy(rows: Iterable[ListRow], guessed: list[model.Remark]) -> None:
     """Convert weights to net buoyancy, positive up.
 
-    Weights are positive down, unless most sinking parts have negative weights. If all sinking parts
-    have positive buoyancies, and all other parts have negative buoyancies, these values are
-    weights, too.
+    Weights are positive down, unless most sinking parts have negative weights. Buoyancies are
+    positive up, unless all sinking parts have positive and all other parts have negative values.
     """
     rows = list(rows)
     sinking = [row.figures["weight"] for row in rows if row.sinks and row.figures.get("weight")]

@@ -39,7 +39,7 @@ class Page:
         return node
 
     def put(self, location: Location, value: Value) -> list[Patch]:
-        """Return the patches that set the value at a location and add missing mappings above it."""
+        """Return the patches that set a value at a location, and add missing parent mappings."""
         outer: Node | None = None
         node = self.root
         for depth, step in enumerate(location):
@@ -292,7 +292,7 @@ def retyped(text: str, lines: Sequence[str]) -> str:
     text = ""
     for line, end in zip(lines, ends, strict=True):
         if text.endswith("\r") and not line and end == "\n":
-            end = "\r"  # both would become one line break
+            end = "\r"  # "\r" and "\n" would become one line break
         text += line + end
     return text
 
@@ -302,7 +302,7 @@ def _taken_from(old: Sequence[str], new: Sequence[str]) -> list[int | None]:
 
     The index is None for an added line.
     """
-    # Comparing is slow, and most often only a line differs.
+    # Comparing is slow, and usually only one line differs.
     head = _common_start(old, new)
     tail = _common_start(old[head:][::-1], new[head:][::-1])
     middle = old[head : len(old) - tail], new[head : len(new) - tail]

@@ -87,7 +87,7 @@ class Draft:
             yaml_document.compose("", self.text)
         except InputError as error:
             return error.problems
-        raise AssertionError("a text that can be read has nodes")
+        raise AssertionError("readable YAML text without nodes")
 
     @cached_property
     def items(self) -> tuple[LineItem, ...]:
@@ -105,7 +105,7 @@ class Draft:
 
     @cached_property
     def lists(self) -> LineLists:
-        """Locations of the lists of line items. A line index counts the items of all legs."""
+        """Locations of the lists of line items; line indices run through the items of all legs."""
         return LineLists.of(self._root.data if self._root is not None else None)
 
     @property
@@ -341,7 +341,7 @@ def _worded(snippets: Iterable[str]) -> Worded:
 
 
 class History:
-    """Undo history of a draft; it also remembers the last saved text.
+    """Undo history of a draft, with the last saved text.
 
     Parameters
     ----------

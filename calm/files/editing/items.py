@@ -27,7 +27,7 @@ _LINE_BREAK = re.compile(r"\r\n|\n")
 class LineLists:
     """Locations of the lists of line items: a single list, or one list per leg of a net.
 
-    A line index counts through the items of all lists.
+    Line indices run through the items of all lists, in file order.
 
     Attributes
     ----------
@@ -54,7 +54,7 @@ class LineLists:
 
     @property
     def legs(self) -> list[str]:
-        """Name of each item's leg, by line index; names are empty if the file has a single line."""
+        """Name of the leg of each item; empty if the file describes a single mooring line."""
         names = [(str(rows[1]) if len(rows) > 1 else "", count) for rows, count in self.all]
         return [name for name, count in names for _ in range(count)]
 
@@ -78,16 +78,17 @@ class LineLists:
         return self.all[-1][0], index
 
     def place_in(self, rows: Location, index: int, *, above: bool) -> tuple[Location, int]:
-        """Return the location and the index in the file of an item in the list at `rows`.
+        """Return the location of the list that contains an item, and the index in this list.
 
-        In `LINE`, the index is a line index, which `place` converts; otherwise it is unchanged.
+        If `rows` is `LINE`, `index` is a line index. Otherwise, `index` is already the index in the
+        list at `rows`.
         """
         return self.place(index, above=above) if rows == LINE else (self.real(rows), index)
 
     def grouped(
         self, indices: Iterable[int], rows: Location
     ) -> Iterator[tuple[Location, list[int]]]:
-        """Yield the location of each list with given items, and their indices in that list."""
+        """Yield each list that contains given items: its location, and the indices of the items."""
         if rows != LINE:
             yield self.real(rows), [*indices]
             return
@@ -178,9 +179,9 @@ class Items:
     start, end : span of the collection in the text, which `patch` replaces
     is_flow : whether the collection is in brackets
     column : column of the dashes, or of the keys of a mapping, counted from 1
-    texts : text of each item: its lines including comments, or for a collection in brackets the
-        text between two commas
-    gaps : for each item, the text before it that is part of no item, such as a less indented
+    texts : text of each item: the lines of the item and its comments; in brackets, the text between
+        two commas
+    gaps : for each item, the text before the item that belongs to no item, such as a less indented
         comment
     rest : text after the last item
     separator : text between two items in brackets

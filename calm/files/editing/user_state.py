@@ -18,7 +18,7 @@ class Presence:
         self._place: Path | None = None
 
     def announce(self, path: Path | None) -> list[int]:
-        """Record the file that this process has open; return ids of other processes with that file.
+        """Record the open file; return the ids of other processes that have the same file open.
 
         The path None means that this process has no file open.
         """

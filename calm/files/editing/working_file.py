@@ -111,7 +111,7 @@ class WorkingFile:
 
     @property
     def stamp(self) -> Stamp | None:
-        """Time, size and inode of the file on disk, used to detect changes; None without a file."""
+        """Time, size and inode of the file, to detect changes; None if there is no file on disk."""
         status = None if self.path is None else _status(self.path)
         return status and (status.st_mtime_ns, status.st_size, status.st_ino)
 
@@ -206,12 +206,12 @@ class WorkingFile:
             return _UNREADABLE if _status(self.path) else None
 
     def _folders(self) -> list[tuple[Path, str]]:
-        """Return folders for the backup copy, the best first, and how its file name begins."""
+        """Return folders for the backup copy, the best first, and beginnings of its file name."""
         if self.path is None:
             return [(state_folder(), "unnamed")]
         target = Path(os.path.realpath(self.path))
         sign = hashlib.sha256(os.fsencode(target)).hexdigest()[:12]
-        # the name may be too long for an addition in the folder of the file
+        # in the folder of the file, the extended name may be too long
         away = state_folder(), f"{target.name[:40]}-{sign}"
         return [(target.parent, f".{target.name}"), away]
 
@@ -314,7 +314,7 @@ class Keeper:
             return False
         except OSError:
             pass  # the process belongs to another user
-        # process numbers are reused, in a container after a short time
+        # process numbers are reused; in a container, this happens after a short time
         return self.started == _started(self.process)
 
 
@@ -367,8 +367,8 @@ def _read(place: Path) -> KeptWork:
 def _started(process: int) -> str:
     """Return the start time of a process in ticks since the machine was booted.
 
-    It is empty if unknown, and for a process that has ended even if its parent has not yet
-    collected its status.
+    The result is empty if the start time is unknown or the process has ended, even if the parent
+    process has not yet collected the exit status.
     """
     try:
         stat = Path(f"/proc/{process}/stat").read_text()

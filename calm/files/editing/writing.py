@@ -1,8 +1,8 @@
 """Write values as YAML in the style of a file, with keys in the order of the models.
 
-Text is written without quotes if it can be read back without them. A file is never written as a
-whole by a YAML library, because that would lose part of its layout, such as aligned columns and
-Windows line ends. This is true even of ruamel.yaml, which preserves most comments.
+Text is written without quotes if it can be read back without them. No YAML library writes a whole
+file, because the file would lose part of its layout, such as aligned columns and Windows line ends.
+Even ruamel.yaml, which preserves most comments, does not preserve all of the layout.
 """
 
 from __future__ import annotations
@@ -108,7 +108,7 @@ class WritingStyle:
         return cls(line_break, step, step if dash is None else dash)
 
     def entry(self, name: str, value: Value, column: int, *, open: bool = False) -> str:
-        """Return the lines that write a key and its value in a block mapping.
+        """Return the lines for a key and its value in a block mapping.
 
         Parameters
         ----------
@@ -154,13 +154,13 @@ class WritingStyle:
         return indented.replace("\n", self.line_break)
 
     def item(self, value: Value, column: int, *, block: bool = False) -> str:
-        """Return the lines that write an item of a block list.
+        """Return the lines for an item of a block list.
 
         Parameters
         ----------
         value : value of the item
         column : column of the dash, from 1
-        block : whether to write one key per line; a value that contains collections always has one
+        block : whether each key gets its own line, as in every value that contains collections
         """
         indent = " " * (column - 1)
         if isinstance(value, Mapping) and value and (block or _is_deep(value)):
@@ -284,7 +284,10 @@ def line_start(text: str, place: int) -> int:
 
 
 def line_end(text: str, place: int) -> int:
-    """Return the index at which the line after the position `place` begins, or the text ends."""
+    """Return the index at which the line that contains the position `place` ends.
+
+    The index is after the line break.
+    """
     found = text.find("\n", place)
     return len(text) if found < 0 else found + 1
 

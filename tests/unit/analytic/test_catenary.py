@@ -137,5 +137,5 @@ def test_pulls_out_of_range() -> None:
         Catenary(0.0, 1.0, 1.0, 1.0)
     with pytest.raises(ValueError, match="vertical pull above 0"):
         Catenary(1.0, -1.0, 1.0, 1.0, seabed=True)
-    with pytest.raises(ValueError, match="between 0 and the length"):
+    with pytest.raises(ValueError, match="from 0 to the length"):
         Catenary(1.0, 1.0, 1.0, 1.0).position(1.1)

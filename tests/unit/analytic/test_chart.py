@@ -243,7 +243,7 @@ def test_a_straight_cable_may_carry_any_tension() -> None:
 def test_no_cable_straddles_the_critical_angle() -> None:
     answer = chart_solve(2.4, 0.5, phi_a=math.radians(140), phi_b=math.radians(150), length=1.0)
     assert answer.status == "no-equilibrium"
-    assert "No cable can pass through the critical angle" in answer.message
+    assert "The angle along a cable cannot cross the critical angle" in answer.message
 
 
 def test_a_cable_without_slack_is_straight_or_none() -> None:

@@ -64,9 +64,9 @@ def test_direct_integration(degrees, f) -> None:
 
 
 def test_values_out_of_range() -> None:
-    with pytest.raises(ValueError, match=r"above the critical angle, 51\.8273°"):
+    with pytest.raises(ValueError, match=r"greater than the critical angle, 51\.8273°"):
         cable_functions(np.radians(51.0), 1.0)
-    with pytest.raises(ValueError, match="weight over normal drag"):
+    with pytest.raises(ValueError, match="ratio of weight to normal drag"):
         cable_functions(1.0, -1.0)
     with pytest.raises(ValueError, match="must not be negative"):
         cable_functions(1.0, 0.1, -0.01)

@@ -167,7 +167,7 @@ def test_values_out_of_range() -> None:
         neutral_line(1.0, 0.0, 1.0, 1.0)
     with pytest.raises(ValueError, match="between 0 and π"):
         neutral_line(1.0, 1.0, 0.0, 1.0)
-    with pytest.raises(ValueError, match="upside down"):
+    with pytest.raises(ValueError, match="vertical mirror image"):
         critical_angle(-0.1)
     with pytest.raises(ValueError, match="below 90°"):
         critical_weight_ratio(np.pi / 2.0)

@@ -167,7 +167,7 @@ def test_values_out_of_range() -> None:
         straight_angle(1.0, 1.0, 3)
     with pytest.raises(ValueError, match="weight and normal drag"):
         linear_cable(1.0, 1.0, 1.0, 0.0, 1.0)
-    with pytest.raises(ValueError, match="arc and the tension"):
+    with pytest.raises(ValueError, match="arc length and the tension"):
         quadratic_cable(-1.0, 1.0, 1.0, 1.0, 1.0, 0.0)
     with pytest.raises(ValueError, match="tangential drag"):
         unequal_cable(1.0, 1.0, 1.0, 1.0, 1.0, -1.0)

@@ -147,7 +147,7 @@ def test_a_short_record_is_refused_with_its_length():
     gev, pot = return_levels(time, values, {})
     assert isinstance(gev, LevelsRefused) and isinstance(pot, LevelsRefused)
     assert (
-        "10 whole years" in gev.reason and "0 of 1 in the record have at least 90 %" in gev.reason
+        "10 whole years" in gev.reason and "at least 90 % of their profiles: 0 of 1" in gev.reason
     )
     assert "183 days" in pot.reason
 
@@ -155,7 +155,7 @@ def test_a_short_record_is_refused_with_its_length():
 def test_a_few_years_do_for_peaks_only():
     time, values = daily_peaks(9.5, 0.1, 2.0, 11)
     gev, pot = return_levels(time, values, {})
-    assert "9 of 10 in the record have at least 90 %" in gev.reason
+    assert "at least 90 % of their profiles: 9 of 10" in gev.reason
     assert isinstance(pot, Fit)
 
 
@@ -204,7 +204,7 @@ def test_a_fit_at_the_bound_of_the_search_is_refused():
     values = np.random.default_rng(13).uniform(size=len(time))
     _, pot = return_levels(time, values, {})
     assert isinstance(pot, LevelsRefused)
-    assert "at the limit of the search" in pot.reason
+    assert "at a limit of the search" in pot.reason
 
 
 @pytest.mark.parametrize("searches", [0, 1])
@@ -238,7 +238,7 @@ def test_no_level_where_the_strongest_currents_have_no_solution():
     assert return_levels(time, kept, {})[0].levels[-1].high < 0.8 * true
     for refusal in return_levels(time, kept, ended):
         assert isinstance(refusal, LevelsRefused)
-        assert "of the profiles with a current, 19 without equilibrium" in refusal.reason
+        assert "the profiles with a current include 19 without equilibrium" in refusal.reason
 
 
 def test_no_level_where_a_profile_did_not_converge():

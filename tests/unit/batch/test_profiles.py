@@ -166,7 +166,7 @@ def test_arrays_of_any_layout_are_taken(subsurface: Design) -> None:
 @pytest.mark.parametrize(
     ("shapes", "message"),
     [
-        (((3, 5), (3, 4), (5,)), "same shape, profiles by levels; they have .3, 5., .3, 4."),
+        (((3, 5), (3, 4), (5,)), "same shape, profiles by levels; their shapes are .3, 5., .3, 4."),
         (((), (), (5,)), "must have the same shape, profiles by levels"),
         (((3, 5), (3, 5), (4,)), "depth must have the shape"),
         (((3, 5), (3, 5), (2, 5)), "depth must have the shape"),
@@ -225,7 +225,7 @@ def test_a_record_is_solved_from_its_file_a_dataset_or_a_table(
 
 
 def test_a_record_and_arrays_are_not_mixed(subsurface: Design) -> None:
-    with pytest.raises(TypeError, match="u needs v and depth"):
+    with pytest.raises(TypeError, match="v or depth is missing"):
         solve_profiles(subsurface, np.zeros((2, 3)))
     with pytest.raises(TypeError, match="contains the whole current"):
         solve_profiles(subsurface, "record.nc", np.zeros((2, 3)), np.zeros(3))

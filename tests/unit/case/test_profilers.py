@@ -116,7 +116,7 @@ def test_a_profiler_in_the_line_is_refused(tmp_path):
 @pytest.mark.parametrize(
     ("change", "state", "told"),
     [
-        (("7500 N", "3300 N"), "fail", "the profiler needs 2.22 kN to travel"),
+        (("7500 N", "3300 N"), "fail", "the profiler needs at least 2.22 kN to travel"),
         (("drive_force: 50 N", "drive_force: 5 N"), "fail", "its drive force is 5.00 N"),
         (("drive_force: 50 N, ", ""), "unknown", "The drive force of"),
         (("diameter: 8 mm", "diameter: 14 mm"), "warn", "wire has a diameter of 14.0 mm"),

@@ -294,7 +294,8 @@ GLASS = "{use: ball, label: glass, count: 2, buoyancy: 50 N}"
         ("{use: pair, label: glass}", "glass ball.count", "change `glass.count`"),
         ("{use: pair, label: glass, count: 3}", "glass ball 2.count", "change `glass.count`"),
         ("{use: pair, label: glass, count: 3}", "glass.length",
-         "an assembly has no length: change its count, or a part: `glass upper`, `glass ball`"),
+         "an assembly has no length; change its count, or change one of the parts `glass upper`, "
+         "`glass ball`"),
     ],
 )  # fmt: skip
 def test_an_assembly_is_counted_as_a_whole(mooring, item, change, told):
@@ -327,7 +328,7 @@ def test_the_count_of_an_assembly_is_found_by_the_label_of_its_item(mooring, cou
 
 @pytest.mark.parametrize("change", ["block.weight", "anchor.weight", "block.buoyancy"])
 def test_the_weight_of_an_anchor_follows_from_its_load(mooring, change):
-    with pytest.raises(UsageError, match="`calm run` prints the weight required"):
+    with pytest.raises(UsageError, match="`calm run` prints it for one environment"):
         size(mooring(), "tilt(thread) <= 2 deg", change)
 
 

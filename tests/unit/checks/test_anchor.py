@@ -112,9 +112,9 @@ def test_an_anchor_without_holding_is_described_without_a_negative_limit(load):
     (slides,) = (one for one in findings if one.rule == "anchor-sliding")
     assert slides.limit is not None and slides.limit < 0.0
     assert (
-        "the vertical load times the factor exceeds the weight of the anchor, so nothing holds it"
-        in slides.message
+        "the vertical load times 1.5 exceeds the anchor's weight in water, so friction cannot hold "
+        "the anchor" in slides.message
     )
     assert limit_text(slides) == "none left"
     (item,) = (one for one in open_items(assessment) if one.head.startswith("Anchor sliding"))
-    assert "nothing holds it" in item.text and "−" not in item.text
+    assert "friction cannot hold the anchor" in item.text and "−" not in item.text

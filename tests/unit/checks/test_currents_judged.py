@@ -50,8 +50,8 @@ def test_the_strongest_current_of_all_environments_is_said(tmp_path):
     assert said(weak) == [
         (
             "warn",
-            "The strongest current checked is 0.10 m/s; a wind of 7 m/s alone drives 0.20 m/s at "
-            "the surface.",
+            "The strongest current checked is 0.10 m/s; a wind of 7 m/s alone drives a surface "
+            "current of 0.20 m/s.",
         )
     ]
 
@@ -94,7 +94,7 @@ def test_a_mooring_deployed_elsewhere_is_unknown(tmp_path):
     assessment = assessment_of("m", environments_checked(mooring, "m"))
     (found,) = (one for one in assessment.findings if one.rule == "as-deployed")
     assert found.state == "unknown"
-    assert found.message.startswith("Deployed 3002 km from the planned position")
+    assert found.message.startswith("The mooring was deployed 3002 km from the planned position")
     near = of(tmp_path, more=where.replace("21", "48.1"))
     assert not [
         one for one in assessment_of("m", environments_checked(near, "m")).findings
@@ -153,7 +153,7 @@ def test_a_current_weaker_than_its_own_record_is_told(tmp_path):
     calm, storm = (
         of(tmp_path, f"{{file: record.csv, time: '2026-01-01T{hour}:00'}}") for hour in ("00", "06")
     )
-    told = "The record behind this current reaches 0.90 m/s; "
+    told = "The strongest current in the record from which this profile was taken is 0.90 m/s; "
     assert said(calm)[0] == ("warn", f"{told}the strongest current checked is 0.30 m/s.")
     assert [state for state, _ in said(storm)] == ["pass"]
     assert [state for state, _ in said(calm, storm)] == ["pass"]

@@ -589,7 +589,7 @@ FLAWS = (
         "release-present",
         "release",
         "fail",
-        "No piece above release is buoyant: after release, it stays on the seabed.",
+        "No piece above release is buoyant, so the release stays on the seabed when it opens.",
     ),
     Flaw(
         "a release that is clamped",
@@ -653,7 +653,7 @@ FLAWS = (
         "stretch",
         "wire",
         "warn",
-        "wire is to be cut to length under a load of 22.00 kN; this exceeds",
+        "wire is to be cut to length under a load of 22.00 kN; this load exceeds",
     ),
     Flaw(
         "a float that leaps",
@@ -674,7 +674,7 @@ FLAWS = (
         "clamp-grip",
         "CTD 900 m",
         "fail",
-        "its grip is 1.00 N",
+        "the grip of the clamp is 1.00 N",
     ),
     Flaw(
         "a wire that winds up its float",
@@ -683,7 +683,7 @@ FLAWS = (
         "swivel",
         "wire",
         "warn",
-        "there is no swivel between them",
+        "there is no swivel between it and",
     ),
     Flaw(
         "a wire that is not torque-balanced, as its material says",
@@ -695,7 +695,7 @@ FLAWS = (
         "swivel",
         "wire",
         "warn",
-        "there is no swivel between them",
+        "there is no swivel between it and",
     ),
     Flaw(
         "a wire that is not torque-balanced, whatever its name says",
@@ -710,7 +710,7 @@ FLAWS = (
         "swivel",
         "wire",
         "warn",
-        "wire is not torque-balanced and ends at top float",
+        "wire is not torque-balanced, and there is no swivel between it and top float",
     ),
     Flaw(
         "a shackle for a release",
@@ -750,7 +750,8 @@ FLAWS = (
         "current",
         None,
         "warn",
-        "The strongest current checked is 0.08 m/s; a wind of 7 m/s alone drives 0.20 m/s",
+        "The strongest current checked is 0.08 m/s; a wind of 7 m/s alone drives a surface "
+        "current of 0.20 m/s",
     ),
     Flaw(
         "a rope that no water drags",
@@ -889,8 +890,8 @@ FLAWS = (
         "as-deployed",
         None,
         "warn",
-        "Deployed in 2100.0 m of water instead of 1800.0 m: the top of the upright line is "
-        "300.0 m deeper",
+        "The mooring was deployed in 2100.0 m of water instead of 1800.0 m. The top of the upright "
+        "line is 300.0 m deeper",
     ),
     Flaw(
         "a buoy that no wind blows on",

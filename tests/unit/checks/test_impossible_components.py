@@ -80,7 +80,7 @@ def test_good_components_pass(good):
         (GOOD_SPHERE, {"buoyancy": "3000 N", "mass": "300 kg"}, "together they exceed"),
         (GOOD_SPHERE, {"buoyancy": "-1000 N", "mass": "110 kg"}, "denser than lead"),
         (GOOD_SPHERE, {"buoyancy": "-100 N", "role": "float"}, "but weighs 100 N in water"),
-        (GOOD_SPHERE, {"mass": "300 g"}, "weighs 0.3 kg with a buoyancy of 2.00 kN"),
+        (GOOD_SPHERE, {"mass": "300 g"}, "weighs 0.3 kg and has a buoyancy of 2.00 kN"),
         (GOOD_ROPE, {"diameter": "80 mm", "mass": "0.06 kg/m"}, "the difference should be near"),
         (GOOD_WIRE, {"stiffness": "3 kN"}, "a wire of its diameter has at least 866 kN"),
         (
@@ -100,7 +100,7 @@ def test_good_components_pass(good):
         (
             GOOD_ROPE,
             {"weight": "0.2 N/m", "mass": "0.19 kg/m"},
-            "near 0.7895 N/m, the weight of the water that it displaces",
+            "near 0.7895 N/m, the weight of the water that the rope displaces",
         ),
         (GOOD_ROPE, {"stiffness": "18 MN"}, "stiffness"),
         (GOOD_ROPE, {"breaking_load": "320 kN"}, "a cable of its diameter has at most"),
@@ -116,7 +116,7 @@ def test_good_components_pass(good):
         (GOOD_ANCHOR, {"kt": "200 kN/(m/s)^2"}, "would sink at 0.22 m/s"),
         (GOOD_ANCHOR, {"kt": "4 N/(m/s)^2"}, "would sink at 48 m/s"),
         # 1025 π/6 · 10³ kg of water, 5.263 MN
-        (GOOD_SPHERE, {"diameter": "10 m"}, "diameter of 10 m has at least 526.31 kN"),
+        (GOOD_SPHERE, {"diameter": "10 m"}, "this diameter, 10 m, has at least 526.31 kN"),
         # 85 mm in place of 8.5 mm; 0.16 N/m in place of 1.6 N/m
         (
             GOOD_WIRE,

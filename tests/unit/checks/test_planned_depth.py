@@ -132,7 +132,7 @@ def test_a_slack_line_is_judged_between_its_depth_in_the_current_and_its_length(
         path.write_text(f"{head}line:\n{first}\n{second}\n{meter}\n{rest}")
         found = [one for one in check(load(path)).all_findings() if one.rule == "planned-depth"]
         assert [one.state for one in found] == [state]
-    assert found[0].remedy == "Check the lengths above CTD, and its planned depth."
+    assert found[0].remedy == "Check the planned depth of CTD, and the lengths above it."
 
 
 def test_a_line_cut_to_fit_is_checked_from_its_top(tmp_path: Path) -> None:

@@ -59,18 +59,18 @@ def test_what_agrees_passes(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("changes", "says"),
     [
-        ({"serial": "1"}, "upper and lower have the same serial number, 1 of sbe37"),
+        ({"serial": "1"}, "upper and lower are both sbe37 and have the same serial number, 1"),
         ({"label": "upper"}, "2 rows of the line have the label `upper`"),
         ({"battery": "2026-01-31"}, "runs out on 2026-01-31; the deployment is on 2026-05-01"),
-        ({"calibrated": "2027-03-01"}, "upper, on 2027-03-01, is after its deployment"),
+        ({"calibrated": "2027-03-01"}, "upper, 2027-03-01, is after the deployment"),
         ({"other": "81"}, "no release of the line has the serial number 81"),
         ({"other": "17"}, "codes for serial number 17 twice"),
         ({"codes": "0A55"}, "Two releases have the same codes"),
         ({"revision": "A"}, "is revision A, but its `history` ends with revision B"),
-        ({"dated": "2026-01-05"}, "dated 2026-01-05, before its revision B of 2026-02-01"),
+        ({"dated": "2026-01-05"}, "but its revision B has a later date, 2026-02-01"),
         (
             {"second": "2025-02-01"},
-            "Revision B is dated 2025-02-01, before the preceding revision A, dated 2026-01-05",
+            "but the preceding revision A has a later date, 2026-01-05",
         ),
     ],
 )

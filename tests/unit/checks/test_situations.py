@@ -145,7 +145,7 @@ def test_a_line_to_the_surface_stands_in_another_depth_than_designed(tmp_path: P
     path.write_text(path.read_text() + "deployed: {depth: 110 m}\n")
     [found] = [each for each in check(load(path)).findings if each.rule == "as-deployed"]
     assert reaches_the_surface(one.leg) and found.value == pytest.approx(10.0)
-    assert "the water is 10.0 m deeper" in found.message
+    assert "The water is 10.0 m deeper" in found.message
 
 
 def test_what_was_deployed_deeper_than_it_stands_fails_the_check(tmp_path: Path) -> None:

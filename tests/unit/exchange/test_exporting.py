@@ -204,7 +204,7 @@ def test_the_head_says_what_is_lost(tmp_path):
     head = exported.content.decode().split("*/")[0]
     for each in exported.lost:
         assert each in " ".join(head.split())
-    assert any("full drag" in each for each in exported.lost)
+    assert any("constant drag" in each for each in exported.lost)
 
 
 @pytest.mark.parametrize("to", ENDINGS)

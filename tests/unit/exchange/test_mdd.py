@@ -224,7 +224,7 @@ def test_a_placeholder_size_is_kept_and_pointed_out(tmp_path):
     size = np.array(HEIGHT)
     size[:, 0] = (1.5, 0.01, 0.01, 2.0)
     made = imported(tmp_path, mooring(H=size))
-    assert "diameter: 10 mm  # guessed: as in the file, but a placeholder" in made.text
+    assert "diameter: 10 mm  # guessed: as in the file, but too small" in made.text
     assert len(made.guessed) == 1
 
 

@@ -90,7 +90,7 @@ def read(tmp_path):
 @pytest.mark.parametrize(
     ("kind", "current", "told"),
     [("3", CURRENT, None), ("2", CURRENT, "vary in time"), ("5", CURRENT, "vary in time"),
-     ("1", None, "without current_profile.txt")],
+     ("1", None, "current_profile.txt is missing")],
 )  # fmt: skip
 def test_a_current_that_is_not_read_is_told(kind, current, told, read, tmp_path):
     """`Currents` as MoorDyn 2 numbers them: 1 and 3 are steady, the others have other files."""

@@ -121,7 +121,7 @@ def test_figures_of_an_institutes_table(tmp_path):
         (HEAD.replace("745", "deep") + LINE, "waterdepth: `deep` is not a number"),
         (HEAD.replace("waterdepth: 745", "waterdepth:") + LINE, "needs `waterdepth`"),
         (HEAD + LINE.replace("hab: 15", "hab: 15, repeat: 1e9"), "`repeat` must be from 1 to 2000"),
-        (HEAD + LINE + "- 7\n", "an item with keys is needed"),
+        (HEAD + LINE + "- 7\n", "a list item must have keys"),
         (HEAD + LINE + "- {hab: 3}\n", "needs a name"),
         (HEAD + LINE + "clamp:\n- {instrument: aquadopp}\n", "needs `hab`"),
         (HEAD.replace("43.913", "63.913") + LINE, "latitude: `65 63.913` has minutes or seconds"),

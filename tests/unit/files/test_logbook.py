@@ -119,7 +119,7 @@ def test_a_release_that_is_not_in_the_line_is_reported(read: Read) -> None:
             (
                 11,
                 18,
-                "`length_at` is for cables and chains; the length of this piece is that of its "
+                "`length_at` is for cables and chains; this piece has the length given in its "
                 "definition",
             ),
         ),

@@ -237,7 +237,9 @@ components:
   block: {kind: anchor, mass: 1000 kg, material: steel}
 """
     notices = " ".join(read(own.replace(old, new)).notices)
-    assert said in notices and bool(said) == ("of block" in notices or "rope-12, which" in notices)
+    assert said in notices and bool(said) == (
+        "of block" in notices or "rope-12; the part" in notices
+    )
 
 
 def test_a_nearer_definition_wins_and_says_so(read: Read, tmp_path: Path) -> None:

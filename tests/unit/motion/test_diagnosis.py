@@ -118,12 +118,6 @@ def test_two_things_that_are_wrong_are_both_named():
     assert {(one.label, one.kind) for one in found} == {("upper", "clock"), ("lower", "drift")}
 
 
-def test_exchanged_neighbours_are_named_and_nothing_else():
-    (found,) = diagnosis(lambda d: d[:, [1, 0, 2]]).faults()
-    assert (found.label, found.other, found.kind) == ("upper", "middle", "exchanged")
-    assert found.sentence() == "upper: its label and the label of middle appear to be exchanged"
-
-
 def test_a_zero_and_a_gain_of_a_sensor_that_hardly_moves_cannot_be_told_apart():
     (found,) = diagnosis(changed(2, 8.0)).faults()
     assert found.label == "lower" and not found.certain

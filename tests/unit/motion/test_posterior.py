@@ -9,9 +9,9 @@ import pytest
 from calm.motion import common_unknowns
 from calm.motion.common_unknowns import Common
 from calm.motion.currents_law import Linear, ReadCurrents
-from calm.motion.estimate import posterior
 from calm.motion.line_response import LineResponse, own_errors
 from calm.motion.measurements import MooringMeasurements
+from calm.motion.unknown_currents import posterior
 
 STILL = np.array([50.0, 100.0, 180.0])  # of three points; the first and the last have sensors
 THERE = np.array([80.0, 120.0, 185.0])

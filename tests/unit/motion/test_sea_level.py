@@ -53,7 +53,7 @@ FAR = "time,level[m]\n" + "".join(
             "time,level[dbar]\n2026-03-01T00:00,1\n",
             "`level[dbar]` is a pressure; a length",
         ),
-        ("c.csv", "time,a[m],b[m]\n2026-03-01T00:00,1,2\n", "has several columns"),
+        ("c.csv", "time,a[m],b[m]\n2026-03-01T00:00,1,2\n", "has several data columns"),
         (
             "d.csv",
             "time,level[m]\nyesterday,1\n2026-03-01T00:00,x\n",

@@ -102,7 +102,10 @@ def test_a_hidden_sensor_is_judged_where_it_and_all_used_ones_have_pressures():
 
 def test_used_sensors_are_judged_without_their_offsets_and_hidden_ones_too(line):
     used = without(measured(), ["b"])
-    task = Task(SimpleNamespace(water=SimpleNamespace(depth=300.0)), used, common(OFFSET[[0, 2]]))
+    mooring = SimpleNamespace(
+        water=SimpleNamespace(depth=300.0), file=SimpleNamespace(position=None)
+    )
+    task = Task(mooring, used, common(OFFSET[[0, 2]]))
     estimated = STILL + DOWN[:, None] * SHARE + 0.3 * RANDOM.standard_normal((TIMES, 3))
     residual = READ[:, [0, 2]] - OFFSET[[0, 2]] - estimated[:, [0, 2]]
     plain = estimated[:, [0, 2]] * 1.005 + 3.0
@@ -162,7 +165,6 @@ def test_each_sensor_is_hidden_in_turn_beside_those_that_are_anyway(line, monkey
     for call in (
         lambda: several(measured(), ["a", "b"]),
         lambda: prepare(None, measured(), (), ["a", "b", "c"]),
-        lambda: prepare(None, measured(), (), ["d"]),
     ):
-        with pytest.raises(UsageError, match=r"at least two|no sensor is|at least one sensor"):
+        with pytest.raises(UsageError, match=r"at least two|at least one sensor"):
             call()

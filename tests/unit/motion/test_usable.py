@@ -6,7 +6,7 @@ import pytest
 import calm
 from calm.errors import UsageError
 from calm.motion.remarks import Fault
-from calm.motion.sensors import plausible, unusable
+from calm.motion.sensors import depth_of, metre_notes, plausible, unusable
 from calm.motion.suspects import distances_of
 from calm.records.instrument_series import InstrumentSeries
 
@@ -134,3 +134,21 @@ def test_times_that_are_late_are_set_back():
     time, depth = late.taken_off(one.time, one.value)
     assert time[0] == np.datetime64("2026-02-28T23:30")
     assert depth.tolist() == [60.0, 80.0]
+
+
+def test_depths_recorded_as_pressures_are_named_and_errors_of_clamps_are_not():
+    place = np.array([220.0, 400.0])
+    wrong = depth_of(place, 45.0)  # depths in metres read as dbar
+    assert "0.9 % low, as depths in metres recorded as dbar" in metre_notes(wrong, place, 45.0)[0]
+    assert "0.9 % high, as pressures in dbar" in metre_notes(place, wrong + 0.1, 45.0)[0]
+    # nor is a common error of the same size, or one that a single sensor has
+    for off in ([-2.9, -2.9], [-2.0, 0.0], [-0.1, -0.2]):
+        assert not metre_notes(place + off, place, 45.0)
+    assert not metre_notes(wrong[:1], place[:1], 45.0)
+    random, named = np.random.default_rng(1), 0
+    for size in (5.0, 10.0, 20.0):
+        for places in ([170.0, 670.0], [50.0, 1900.0], [500.0, 1500.0, 2500.0]):
+            for _ in range(100):
+                off = size * random.standard_normal(len(places))
+                named += len(metre_notes(np.array(places) + off, np.array(places), 45.0))
+    assert named <= 4

@@ -53,7 +53,7 @@ def test_a_weak_current_is_said(tmp_path):
     path = tmp_path / "weak.yaml"
     weak = "name: weak\nenvironment: {depth: 300 m, current: {speed: 0.05 m/s, toward: 9 deg}}\n"
     path.write_text(weak + _LINE, encoding="utf-8")
-    told = "a wind of 7 m/s alone drives 0.20 m/s at the surface"
+    told = "a wind of 7 m/s alone drives a surface current of 0.20 m/s"
     assert told in strongest_current(judged(path)).weak
 
 

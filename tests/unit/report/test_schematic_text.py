@@ -51,7 +51,8 @@ Small line
  /###\\     block          block           0.50   99.5     0.5
 ▒▒▒▒▒▒▒▒▒▒ seabed                               100.0     0.0
 
-Not to scale. Depth and height are at the upper end, upright and unstretched."""
+Not to scale. Depth and height are given at the upper end of each part, with the
+line upright and unstretched."""
 
 
 @pytest.fixture
