@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from enum import Enum
+from math import hypot
 
 import numpy as np
 from numpy.typing import NDArray
@@ -101,7 +102,7 @@ def first_implausible(record: Record, maximum_speed: float) -> str:
             at, level = (int(index[0]) for index in np.nonzero(found))
             deep = float(depth[at if depth.ndim == 2 else ..., level])
             up = 0.0 if w is None else float(w[at, level])
-            speed = float(np.sqrt(u[at, level] ** 2 + v[at, level] ** 2 + up * up))
+            speed = hypot(u[at, level], v[at, level], up)
             time = np.datetime_as_string(record.time[start + at], unit="m")
             value = f"{speed:.5g} m/s" if np.isfinite(speed) else IMPOSSIBLE
             return f"the first at {time}, {deep:g} m: {value}"

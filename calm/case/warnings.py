@@ -12,7 +12,8 @@ from calm.case.leg import Leg
 from calm.case.parts import below_the_seabed
 from calm.case.result_tables import AnchorLoad, Clamps, ComponentRow, Components, Shape
 from calm.case.strumming import Strumming
-from calm.files import Cable, Component, MooringFile
+from calm.files import Cable, Clamp, Component, MooringFile, Piece, Rigid
+from calm.files.definition import CATALOGUE_DENSITY
 from calm.files.pieces import clamps_in, parts_of
 from calm.physics.line import Water
 from calm.physics.materials import fibre_of, published_stiffnesses
@@ -25,6 +26,8 @@ LARGEST_REYNOLDS = 2e5
 """Largest Reynolds number for which the constant drag coefficient of a smooth sphere or cylinder is
 valid.
 """
+BRACKISH = 1010.0
+"""Density of water below which the buoyancy in sea water is noticeably too high [kg/m³]."""
 LARGEST_STRAIN = 0.25
 """Strain near which new nylon fails, and above which no linear stiffness is valid."""
 
@@ -301,18 +304,18 @@ def _other_equilibrium(_: _Measured, solution: Solution) -> Iterator[str]:
     other = solution.other
     if other is None:
         return
+    both = other.grounded_length != solution.grounded_length
+    lying = f"{other.grounded_length:.1f} m of line on the seabed" if both else ""
     if solution.surface and other.used_buoyancy < 1.0:
         pull = say("force", hypot(other.anchor_vertical, other.anchor_horizontal))
         yield (
             f"Another equilibrium exists, with {other.used_buoyancy:.1%} of the float's buoyancy "
-            f"in use and an anchor load of {pull}."
+            f"in use{', ' * both}{lying} and an anchor load of {pull}."
         )
         return
-    both = other.grounded_length != solution.grounded_length
-    on_the_bed = f" and {other.grounded_length:.1f} m of line on the seabed" if both else ""
     yield (
         "Another equilibrium exists, with the free end at a depth of "
-        f"{other.depth:.1f} m{on_the_bed}."
+        f"{other.depth:.1f} m{' and ' * both}{lying}."
     )
 
 
@@ -330,6 +333,37 @@ def _hull_unknown(result: _Measured, solution: Solution) -> Iterator[str]:
             else "the drag is that of `k_surface`"
         )
         yield f"The draft is unknown, because {', '.join(afloat)} {reason}; {state}."
+
+
+def buoyancy_of_sea_water(leg: Leg) -> tuple[Piece | Clamp, str] | None:
+    """Return the first float whose buoyancy in fresh water is too high, and a message about it.
+
+    The change of a float's buoyancy with the density of the water follows from its displaced
+    volume, which may be unknown.
+    """
+    density = float(np.max(leg.water.density))  # at the surface alone, water may be fresher
+    if density >= BRACKISH:
+        return None
+    floats = [
+        part for part in parts_of(leg.file.pieces)
+        if isinstance(part.component, Rigid) and part.component.net_buoyancy > 0.0
+        and part.component.displaced_volume is None
+    ]  # fmt: skip
+    if not floats:
+        return None
+    lost = 100.0 * (1.0 - density / CATALOGUE_DENSITY)
+    others = len(floats) - 1
+    which = floats[0].label + (f" and {others} other part{'s' * (others > 1)}" if others else "")
+    return floats[0], (
+        f"The buoyancy of {which} is that in water of {CATALOGUE_DENSITY:g} kg/m³: without `mass` "
+        f"or `volume` it is not reduced, although in water of {density:.0f} kg/m³ the displaced "
+        f"water weighs {lost:.1f} % less."
+    )
+
+
+def _buoyancy_too_high(result: _Measured, _: Solution) -> Iterator[str]:
+    if (found := buoyancy_of_sea_water(result.leg)) is not None:
+        yield found[1]
 
 
 def _wind_ignored(result: _Measured, solution: Solution) -> Iterator[str]:
@@ -379,7 +413,7 @@ _OF_ANY: tuple[Callable[[_Measured, Solution], Iterator[str]], ...] = (
 )  # fmt: skip
 _OF_A_MOORING: tuple[Callable[[_Measured, Solution], Iterator[str]], ...] = (
     _anchor_too_light, _anchor_of_unknown_material, _bight, _on_the_seabed, _slack,
-    _far_too_long, _hull_unknown, _wind_ignored,
+    _far_too_long, _hull_unknown, _wind_ignored, _buoyancy_too_high,
 )  # fmt: skip
 _OF_A_TOW: tuple[Callable[[_Measured, Solution], Iterator[str]], ...] = (
     _below_the_sea,

@@ -16,6 +16,7 @@ from calm.case.warnings import is_synthetic
 from calm.checks.assessment import Handling
 from calm.checks.criterion import JudgedPart, parts_of
 from calm.checks.finding import Lack, State, Verdict, at_least, at_most, rule, unknown, verdict_on
+from calm.checks.handling import is_hauled_in
 from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Recovery
 from calm.drop.launch import Launch
@@ -297,9 +298,9 @@ def clamp_grip_in_transit(handling: Handling) -> Iterator[Verdict]:
 
     Each force [N] results from the submerged weight of the clamped item and its drag in flow along
     the line. The speed of the flow is the touchdown speed of the anchor in the launch, and the
-    terminal rise speed of the line in the recovery.
+    terminal rise speed of the line in the recovery. A line that is hauled in has no ascent.
     """
-    launch, rise = handling.launch, handling.recovery
+    launch, rise = handling.launch, None if is_hauled_in(handling) else handling.recovery
     deep = np.array(handling.leg.water.depth)
     density = float(handling.leg.water.density_at(deep))
     for part in _clamps(handling.leg):

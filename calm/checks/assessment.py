@@ -239,7 +239,7 @@ class Acceptance:
 
     def _estimated(self, finding: Finding) -> Finding:
         """Change a pass that relies on a lower bound to estimated, and a failure that relies on it
-        to unknown.
+        to unknown. A failure by a specified value remains a failure.
         """
         part, figures = self.parts.get(finding.component or ""), RULES[finding.rule].figures
         if part is None or not figures or finding.state not in (State.PASS, State.FAIL):
@@ -249,6 +249,10 @@ class Acceptance:
         if not used:
             return finding
         passes = finding.state is State.PASS
+        if not passes and finding.figure:
+            used = tuple(one for one in used if one.quantity == finding.figure)
+            if not used:
+                return finding
         return finding.but(
             state=State.ESTIMATED if passes else State.UNKNOWN,
             message=f"{finding.message} {_in_words(used)}",

@@ -81,6 +81,7 @@ class Criterion:
         that the value is unknown
     source : source of the limit; if "", the source of the rule is given instead
     lacks : key of the missing component value, if `limit` is None
+    figure : key of the component value that sets `limit`, for a rule that uses several; else ""
     stated : function that takes the value and the result, and returns value and limit of a more
         customary quantity
     stated_least : whether the limit of that customary quantity is a lower limit
@@ -95,6 +96,7 @@ class Criterion:
     silent: bool = False
     source: str = ""
     lacks: str = ""
+    figure: str = ""
     stated: Callable[[float, LegResult], tuple[float, float]] | None = None
     stated_least: bool = False
 
@@ -113,8 +115,9 @@ class Criterion:
             shown, limit = self.stated(value, result)
             least = self.stated_least
         return at_most(
-            self.part, shown, limit, message, remedy, self.beyond, self.source, least=least
-        )
+            self.part, shown, limit, message, remedy, self.beyond, self.source,
+            least=least, figure=self.figure,
+        )  # fmt: skip
 
 
 def verdicts(criteria: Iterable[Criterion], result: LegResult) -> Iterator[Verdict]:

@@ -13,6 +13,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from calm.case.leg import Leg
+from calm.case.warnings import buoyancy_of_sea_water
 from calm.checks.finding import State, Verdict, rule, verdict_on
 from calm.checks.posture import reaches_the_surface
 from calm.files import CurrentTable
@@ -51,6 +52,7 @@ def environment(legs: Sequence[Leg]) -> Iterator[Found]:
     for leg in legs[1:]:
         yield from _weaker_than(legs[0], leg)
     yield from _no_wind(legs)
+    yield from _in_fresh_water(legs)
 
 
 def _weaker_than(ordinary: Leg, other: Leg) -> Iterator[Found]:
@@ -99,3 +101,10 @@ def _no_wind(legs: Sequence[Leg]) -> Iterator[Found]:
         message = f"No environment has a `wind`, so the wind load on {top.label} is not checked."
         remedy = "Set `wind` in each environment, for example the wind of a storm."
         yield legs[0], verdict_on(top, State.WARN, message, remedy)
+
+
+def _in_fresh_water(legs: Sequence[Leg]) -> Iterator[Found]:
+    lightest = min(legs, key=lambda leg: float(np.max(leg.water.density)))
+    if (found := buoyancy_of_sea_water(lightest)) is not None:
+        part, message = found
+        yield lightest, verdict_on(part, State.WARN, message, "Set the `mass` of the float.")

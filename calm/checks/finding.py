@@ -176,6 +176,7 @@ class Verdict:
     lacks : component value that the rule requires but the file lacks; None if none is missing
     missing : missing value with the rules and pieces that need it, for the rule `missing` only
     case : code of the load case; None for the code of the environment and situation
+    figure : key of the component value that sets the limit, for a rule that uses several; else ""
     """
 
     component: str | None
@@ -190,6 +191,7 @@ class Verdict:
     lacks: Lack | None = None
     missing: MissingFigure | None = None
     case: str | None = None
+    figure: str = ""
 
     def but(self, **changed: Any) -> Self:
         """Return a copy of the verdict with changed fields."""
@@ -250,16 +252,17 @@ def at_most(
     source: str = "",
     *,
     least: bool = False,
+    figure: str = "",
 ) -> Verdict:
     """Create the verdict on a value with a limit.
 
     The limit is an upper limit, or a lower limit if `least` is true. `beyond` is the state of the
-    verdict if the value violates the limit.
+    verdict if the value violates the limit. `figure` is as in `Verdict`.
     """
     sense: Sense = ">=" if least else "<="
     keeps = value >= limit if least else value <= limit
     state, advice = (State.PASS, None) if keeps else (beyond, remedy)
-    return verdict_on(part, state, message, advice, value, limit, sense, source)
+    return verdict_on(part, state, message, advice, value, limit, sense, source, figure)
 
 
 at_least = partial(at_most, least=True)
@@ -296,10 +299,11 @@ def verdict_on(
     limit: float | None = None,
     sense: Sense | None = None,
     source: str = "",
+    figure: str = "",
 ) -> Verdict:
     """Create a verdict on a part of the line, or on the whole mooring if `part` is None."""
     label, place = (None, None) if part is None else (part.label, part.place)
-    return Verdict(label, value, limit, sense, state, message, remedy, place, source)
+    return Verdict(label, value, limit, sense, state, message, remedy, place, source, figure=figure)
 
 
 @dataclass(frozen=True)
@@ -452,25 +456,31 @@ def by_rule(findings: Iterable[Finding]) -> dict[str, list[Finding]]:
 
 
 def worst_of(findings: Iterable[Finding]) -> Finding:
-    """Return the most severe finding; among equals, the one with the largest utilisation.
+    """Return the most severe finding; among equals, the one with the largest utilisation, or
+    without utilisations the one with the least margin.
 
     A finding that is not judged is returned only if there is no other finding.
     """
     found = [*findings]
     judged = [one for one in found if one.state is not State.NOT_JUDGED]
-    return min(judged or found, key=lambda one: one.rank)
+    return min(judged or found, key=_worst_first)
+
+
+def _worst_first(finding: Finding) -> tuple[tuple[int, float], float]:
+    margin = finding.margin if finding.utilisation is None else None
+    return finding.rank, 0.0 if margin is None else margin
 
 
 def governing(findings: Iterable[Finding]) -> Finding:
     """Return the governing finding, which is the finding with the largest utilisation.
 
     Of several findings with the same utilisation, the most severe governs. If no finding has a
-    utilisation, the most severe finding governs.
+    utilisation, the most severe finding with the least margin governs.
     """
     found = [*findings]
     used = [(use, one) for one in found if (use := one.utilisation) is not None]
     if not used:
-        return min(found, key=lambda one: one.rank)
+        return min(found, key=_worst_first)
     return min(used, key=lambda pair: (-pair[0], pair[1].rank))[1]
 
 

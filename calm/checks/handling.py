@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 from math import isnan
 
-from calm.case.warnings import counted_working_load
 from calm.checks.assessment import Handling
 from calm.checks.criterion import cited
 from calm.checks.finding import State, Verdict, at_least, at_most, rule, unknown, verdict_on
@@ -11,6 +10,7 @@ from calm.checks.leg_graph import Break, Loss
 from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Recovery
 from calm.checks.strength import (
+    governing_load,
     lesser_load,
     load_text,
     no_load_known,
@@ -115,7 +115,7 @@ def launch_strength(handling: Handling) -> Iterator[Verdict]:
     most = "" if launch.anchor_drag_known else " at most"
     for piece, tension in zip(file.pieces, launch.greatest_tension.tolist(), strict=False):
         limit = lesser_load(piece.component, times, over)
-        working = counted_working_load(piece.component)
+        figure = governing_load(piece.component, times, over)
         carried = load_text(piece, tension, " during the descent", most)
         if limit is None:
             if passes_load_on(file, piece.index):
@@ -123,7 +123,7 @@ def launch_strength(handling: Handling) -> Iterator[Verdict]:
                 lacks = wanted_load(piece.component)
                 yield unknown(piece, message, remedy, tension, lacks=lacks)
             continue
-        if working is not None and limit == times * working:
+        if figure == "working_load":
             load = "working load" if times == 1.0 else f"working load times {times:g}"
             source = cited(file, "launch_working_factor")
         else:
@@ -138,7 +138,7 @@ def launch_strength(handling: Handling) -> Iterator[Verdict]:
         remedy = (
             "Use a stronger component, slow the anchor with a parachute, or lower it on a wire."
         )
-        yield at_most(piece, tension, limit, message, remedy, source=source)
+        yield at_most(piece, tension, limit, message, remedy, source=source, figure=figure)
 
 
 @rule("launch-speed", once=True, case="L")

@@ -50,6 +50,16 @@ def lesser_load(component: Component, working_factor: float, factor: float) -> f
     return min(known, default=None)
 
 
+def governing_load(component: Component, working_factor: float, factor: float) -> str:
+    """Return the key of the load rating that sets `lesser_load`; "" without any load rating."""
+    working = counted_working_load(component)
+    lesser = lesser_load(component, working_factor, factor)
+    if lesser is None:
+        return ""
+    by_working = working is not None and lesser == working_factor * working
+    return "working_load" if by_working else "breaking_load"
+
+
 def wanted_load(component: Component) -> str:
     """Return the key of the load rating to request for a component without any load rating.
 
@@ -110,11 +120,12 @@ def strength(leg: Leg) -> Iterator[Criterion]:
         if limit is None and not passes_load_on(leg.file, part.index):
             continue
         name = safety_factor_name(component, surface)
-        of_factor = limit is not None and limit != component.working_load
-        source = cited(leg.file, f"safety_factor.{name}") if of_factor else ""
-        words = partial(_strength_words, part, limit, getattr(factors, name))
+        factor = getattr(factors, name)
+        figure = governing_load(component, 1.0, factor)
+        source = cited(leg.file, f"safety_factor.{name}") if figure == "breaking_load" else ""
+        words = partial(_strength_words, part, limit, factor)
         lacks = wanted_load(component)
-        yield Criterion(part, "tension", limit, words, source=source, lacks=lacks)
+        yield Criterion(part, "tension", limit, words, source=source, lacks=lacks, figure=figure)
 
 
 def _strength_words(
@@ -123,7 +134,7 @@ def _strength_words(
     component, load = part.component, load_text(part, tension)
     if limit is None:
         return no_load_known(load)
-    if limit == counted_working_load(component):
+    if governing_load(component, 1.0, factor) == "working_load":
         allowed = f"its working load is {say('load', limit)}"
     else:
         allowed = (
@@ -171,12 +182,15 @@ def release_load(leg: Leg) -> Iterator[Criterion]:
         if part.component.role == "release":
             lacks = wanted_load(part.component)
             stands = allowable_load(part.component, factors, surface)
-            opens = part.component.opening_load
+            factor = safety_factor(part.component, factors, surface)
+            figure = governing_load(part.component, 1.0, factor)
             words = partial(_release_words, part, False, stands)
-            yield Criterion(part, "tension", stands, words, lacks=lacks)
-            limit = stands if opens is None else opens
+            yield Criterion(part, "tension", stands, words, lacks=lacks, figure=figure)
+            limit, opens = stands, part.component.opening_load
+            if opens is not None:
+                limit, figure = opens, "opening_load"
             words = partial(_release_words, part, True, limit)
-            yield Criterion(part, "tension_bottom", limit, words, lacks=lacks)
+            yield Criterion(part, "tension_bottom", limit, words, lacks=lacks, figure=figure)
 
 
 def _release_words(

@@ -11,6 +11,7 @@ from calm.checks.criterion import cited
 from calm.checks.finding import State, Verdict, at_least, at_most, rule, unknown, verdict_on
 from calm.checks.posture import reaches_the_surface
 from calm.checks.strength import (
+    governing_load,
     lesser_load,
     load_text,
     no_load_known,
@@ -83,7 +84,9 @@ def wave_strength(evidence: MooringInWaves) -> Iterator[Verdict]:
             continue
         message = f"{load}; the limit is {say('load', limit)}.{_measured(row, 'greatest')}"
         remedy = "Use a stronger component, or a more elastic line."
-        yield _sure(waves, at_most(piece, tension, limit, message, remedy, source=source))
+        figure = governing_load(piece.component, 1.0, factor)
+        verdict = at_most(piece, tension, limit, message, remedy, source=source, figure=figure)
+        yield _sure(waves, verdict)
 
 
 @rule("wave-slack")

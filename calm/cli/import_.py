@@ -145,7 +145,8 @@ def _assign(file: Path, onto: Path, output: Path, json: Path | None) -> ExitCode
     for sentence in (*found.assigned, *found.doubts):
         narrate(sentence)
     count = len(found.assigned)
-    save(target, found.text.encode(), f": {count} instruments of {file} were assigned")
+    were = "instrument of {} was" if count == 1 else "instruments of {} were"
+    save(target, found.text.encode(), f": {count} {were.format(file)} assigned")
     if json is not None:
         document = {"file": str(file), "output": str(target), "assigned": list(found.assigned),
                     "doubts": list(found.doubts)}  # fmt: skip

@@ -102,7 +102,8 @@ def towed(
     if not astern.any():
         astern[:2] = -ship.east, -ship.north
     astern /= np.linalg.norm(astern)
-    length = mover.chain.length
+    # a rope with permanent elongation is longer than its cut length even without tension
+    length = mover.chain.length * (1.0 + mover.strain(np.zeros_like(mover.chain.length))[0])
     along = np.append(np.cumsum(length[::-1])[::-1], 0.0)
     state = ChainState(
         time=0.0,

@@ -94,8 +94,8 @@ def read_instrument_list(path: Path, seabed: float) -> list[ListedInstrument]:
     Raises
     ------
     InputError
-        The list cannot be read, has an unknown format, or has no instrument with a serial number or
-        a nominal depth.
+        The list cannot be read, has an unknown format, or has no instrument with a serial number,
+        or with a nominal depth and a name or a clock offset.
     """
     head = read_head(path, _HEAD)
     if cf_files.engine_of(path):
@@ -106,12 +106,20 @@ def read_instrument_list(path: Path, seabed: float) -> list[ListedInstrument]:
         found = [*_of_rodb(path, seabed)]
     else:
         found = _of_table(path, seabed, _of_workbook(path) if is_workbook(head) else None)
-    found = [one for one in found if one.serial or one.nominal == one.nominal]
+    found = [one for one in found if one.serial or (one.nominal == one.nominal and _says_more(one))]
     if not found:
-        raise refused(path, "lists no instrument with a serial number or a nominal depth")
+        message = (
+            "lists no instrument with a serial number, or with a nominal depth and a name or a "
+            "clock offset"
+        )
+        raise refused(path, message)
     if len(found) > MOST_PIECES:
         raise refused(path, f"lists more than {MOST_PIECES} instruments")
     return found
+
+
+def _says_more(one: ListedInstrument) -> bool:
+    return bool(one.name or one.remark) or one.clock is not None
 
 
 def _of_arrays(path: Path, seabed: float) -> Iterator[ListedInstrument]:

@@ -68,7 +68,8 @@ RULES = {
         "down to the seabed, or is stronger than any current measured in deep water; a density not "
         "found in any sea; a tidal range of more than 20 m; wind of more than 75 m/s; at some "
         "levels, a storm current of less than half the ordinary current; no `wind` although a "
-        "surface float has a `wind_area`",
+        "surface float has a `wind_area`; fresh or brackish water in which the buoyancy of a float "
+        "without `mass` and `volume` is too high",
         "There is a warning for each of these",
         "CALM's own limits, from ranges found at sea and common typing errors",
         "`calm check` compares the environments with each other"),

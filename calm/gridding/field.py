@@ -9,8 +9,8 @@ is due to scales below the sensor spacing, and to sensor noise.
 An error in the depth of an instrument causes an error in its values, which equals the depth error
 times the local gradient. This error is added to the standard deviation of the result without
 averaging over instruments, because it may be common to all instruments for the whole record. Half
-of its variance also counts as independent noise of each instrument, which gives more weight to
-instruments of well-known depth.
+the variance of this error also counts as independent noise of each instrument, which gives more
+weight to instruments of well-known depth.
 """
 
 from __future__ import annotations
@@ -112,8 +112,8 @@ def field_of(samples: Samples, noise: float, *, in_time: bool = True) -> Gridded
 def profile_of(samples: Samples, noise: float) -> RecordProfile:
     """Return the mean and standard deviation of a record as functions of depth.
 
-    The mean is a local linear fit, and the standard deviation, at least `noise`, the root of a
-    local mean of squared deviations, both with Gaussian weights as wide as the sensor spacing.
+    The mean is a local linear fit. The standard deviation is the root of a local mean of squared
+    deviations, and at least `noise`. Both use Gaussian weights as wide as the sensor spacing.
     """
     known = np.isfinite(samples.value)
     depth, value = samples.depth[known], samples.value[known]
@@ -131,7 +131,7 @@ def profile_of(samples: Samples, noise: float) -> RecordProfile:
 
 
 def spacing(samples: Samples) -> float:
-    """Return the median vertical spacing of instruments that are not nearly at one depth [m]."""
+    """Return the median vertical spacing of the instruments [m], ignoring very small spacings."""
     place = np.sort(np.nanmean(samples.depth[:, np.isfinite(samples.value).any(axis=0)], axis=0))
     apart = np.diff(place)
     wide = apart[apart > 0.2 * (place[-1] - place[0]) / max(len(apart), 1)]
@@ -193,7 +193,7 @@ def _block(field: GriddedQuantity, times: NDArray[np.int64]) -> _Block:
 
 
 def _slopes(samples: Samples, times: NDArray[np.int64], at: Floats) -> tuple[Floats, Floats]:
-    """Estimate vertical gradients at depths (n, k), and depth errors, from nearby sensors [m]."""
+    """Estimate vertical gradients, and depth errors [m], at depths (n, k) from nearby sensors."""
     depth, value, error = (
         table[times][:, None, :] for table in (samples.depth, samples.value, samples.deviation)
     )
@@ -211,7 +211,7 @@ def _slopes(samples: Samples, times: NDArray[np.int64], at: Floats) -> tuple[Flo
 def _correlation(a: Floats, b: Floats, s: Floats, t: Floats, scales: Scales) -> Floats:
     """Return correlations (n, i, j) of depths a at times s (n, i) with depths b at times t (n, j).
 
-    They are multiplied by the correlated share of the variance.
+    The correlations are multiplied by the correlated share of the variance.
     """
     far = 3.0**0.5 / scales.depth * np.abs(a[:, :, None] - b[:, None, :])
     apart = np.abs(s[:, :, None] - t[:, None, :]) / scales.time
@@ -219,7 +219,7 @@ def _correlation(a: Floats, b: Floats, s: Floats, t: Floats, scales: Scales) -> 
 
 
 def posterior(field: GriddedQuantity, times: NDArray[np.int64], levels: Floats) -> LevelPosterior:
-    """Compute the posterior (n, k) at times of given indices (n,) and depths (k,) or (n, k) [m]."""
+    """Compute the posterior (n, k) at the depths `levels` (k,) or (n, k) [m] at n of the times."""
     block = _block(field, times)
     level = np.broadcast_to(np.atleast_2d(levels), (len(times), np.atleast_2d(levels).shape[1]))
     spread = field.profile.deviation_at(level)
@@ -239,8 +239,8 @@ def posterior(field: GriddedQuantity, times: NDArray[np.int64], levels: Floats) 
 def estimate(field: GriddedQuantity, levels: Floats, times: NDArray[np.int64]) -> LevelValues:
     """Estimate the values of a quantity at levels (k,) [m] for times with the indices (n,).
 
-    Values between the sensors are flagged as interpolated. Values beyond the sensors, and values
-    that the record constrains poorly, are doubtful; values that are both are missing.
+    Values between the sensors are flagged as interpolated. A value is doubtful if it is beyond the
+    sensors, or if the record constrains it poorly. If both are true, the value is missing.
     """
     known = np.isfinite(field.samples.value[times])
     depth = np.where(known, field.samples.depth[times], np.nan)
@@ -259,8 +259,8 @@ def estimate(field: GriddedQuantity, levels: Floats, times: NDArray[np.int64]) -
 def _likeliest(field: GriddedQuantity, times: NDArray[np.int64]) -> Scales:
     """Find the most likely correlation scales, from the samples at some times.
 
-    A weak prior determines scales that the record does not constrain: a quarter of the line, six
-    time steps, and 2 % uncorrelated variance. The standard deviation of the prior is a factor of
+    A weak prior determines scales that the record does not constrain. Its medians are a quarter of
+    the line, six time steps, and 2 % uncorrelated variance. Its standard deviation is a factor of
     about five for each scale.
     """
     from scipy.optimize import minimize
@@ -298,7 +298,7 @@ def left_out(field: GriddedQuantity, times: NDArray[np.int64]) -> tuple[Floats, 
     The values of the sensor at the neighbouring times are also withheld. The prediction follows
     from the sensor's block in the inverse covariance matrix (Rasmussen and Williams, eq. 5.12,
     extended to blocks). Return measured minus predicted values (n, s) and their standard
-    deviations, NaN if the sensor has no value, or no other sensor has a value.
+    deviations. Both are NaN if the sensor has no value, or if no other sensor has a value.
     """
     block = _block(field, times)
     sensors = field.samples.value.shape[1]
@@ -318,11 +318,11 @@ def left_out(field: GriddedQuantity, times: NDArray[np.int64]) -> tuple[Floats, 
     return residual, spread
 
 
-MIN_RESIDUALS = 20  # minimum number of residuals of a sensor for a factor
+MIN_RESIDUALS = 20  # minimum number of residuals from which a factor is estimated
 
 
 def _beyond(field: GriddedQuantity, times: NDArray[np.int64]) -> float:
-    """Find the factor by which bands of a sensor beyond all others must be widened for 95 %."""
+    """Return the factor that widens bands beyond the outermost sensors to cover 95 % of values."""
     residual, spread = left_out(field, times)
     place = np.where(np.isfinite(residual), field.samples.depth[times], np.nan)
     upper, lower = (f.reduce(place, axis=1)[:, None] for f in (np.fmin, np.fmax))

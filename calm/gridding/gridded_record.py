@@ -201,8 +201,8 @@ def read_gridded(
 ) -> GriddedRecord:
     """Read the files of a mooring and fit the field of each quantity.
 
-    The arguments are those of `grid`, as texts of the command. Each note and each summary card is
-    passed to `report` or `show` as soon as it is known.
+    The arguments are those of `grid`, as the command has read them; `averaged` is the step as text.
+    Each note is passed to `report`, and each summary card to `show`, as soon as it is known.
     """
     if method not in METHODS:
         raise UsageError(not_among("--method", method, METHODS))
@@ -274,8 +274,8 @@ def sample_notes(
 ) -> Iterator[str]:
     """Yield sentences about problems in the samples of a quantity.
 
-    Files seem to be exchanged if pressures do not agree with the depth of the instrument, or if the
-    mean temperatures would change steadily with depth only after an exchange.
+    Files seem to be exchanged if the pressures in a file do not agree with the depth of its
+    instrument, or if an exchange would make the mean temperatures rise or fall steadily with depth.
     """
     labels = places.places.label
     for i, at in points.items():

@@ -80,7 +80,7 @@ def _understood(dataset: Dataset, path: Path) -> MooringDepths:
     )
 
 
-ANOTHER_PLACE = 30.0  # difference of pressure [dbar] and depth [m] of another instrument
+ANOTHER_PLACE = 30.0  # difference of pressure [dbar] and depth [m] that suggests another one
 
 MOST = 5_000_000  # maximum number of times written: one a second for two months
 
@@ -101,7 +101,7 @@ def common_times(
 ) -> Times:
     """Choose the times of the field, in the period in which both depths and values are known.
 
-    They are the times of the depths or, if a step is given, are equally spaced.
+    The times are those of the depths, or equally spaced times if a step is given.
     """
     known = [one.time[np.isfinite(one.value)] for one in series]
     known = [one for one in known if len(one)]
@@ -136,8 +136,8 @@ def gather(
 ) -> Samples:
     """Average the values around each time (n,), and the depths at which the values were measured.
 
-    Each value counts for the nearest time, if this time is within half a time step. `points` is the
-    point of the line for each series by index.
+    Each value counts for the nearest time, if this time is within half a time step. `points` maps
+    the index of each series to its point on the line.
     """
     still = depths.places.still
     each = [(at, series[i].below) for i, at in points.items()]

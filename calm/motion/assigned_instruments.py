@@ -19,7 +19,8 @@ from calm.motion.matching import CERTAIN, in_order, named_point, places_of
 from calm.records.current_terms import parse_time, time_text
 from calm.records.instrument_series import Identity
 
-# least reported difference of nominal and still-water depth: share of the depth, and metres
+# difference of nominal and still-water depth that is reported: share of the depth, and metres;
+# the larger one counts
 ASTRAY = 0.02, 5.0
 _ITEMS = ("deployed", "items")
 
@@ -37,8 +38,8 @@ class AssignedInstruments:
 def assign_instruments(path: Path, list_of_instruments: Path) -> AssignedInstruments:
     """Copy serial numbers and clock errors from an instrument list to `deployed` of a mooring file.
 
-    Instruments are matched to parts of the line by name or serial number, or else by nominal depth,
-    in order down the line. The rest of the file is unchanged.
+    Instruments are matched to parts of the line by name or serial number. The other instruments are
+    matched by nominal depth, in order down the line. The rest of the file is unchanged.
     """
     mooring = load(path)
     refuse_all_but_moorings(mooring.file)

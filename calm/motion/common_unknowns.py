@@ -17,14 +17,14 @@ from calm.motion.currents_law import SpeedLaw
 from calm.physics.line import Floats, Integers
 
 FURTHEST = 1.0  # limit on the logarithm of a factor
-REACH = 5.0  # least distance from a sensor to the points that give its slope on the line [m]
+REACH = 5.0  # least distance from a sensor to the points that determine the slope of the line [m]
 
 
 @dataclass(frozen=True)
 class Common:
     """Estimate of the q unknowns common to a whole record.
 
-    These are, in this order, the logarithms of the factors, the datum [m] and the offsets [m].
+    The unknowns are, in order, the logarithms of the factors, the datum [m] and the offsets [m].
     """
 
     factors: Mapping[str, float]  # names of the estimated factors and their values
@@ -62,9 +62,9 @@ class Common:
 def common_beforehand(
     factors: Mapping[str, float], datum: float, sensors: int, mean: float = 0.0
 ) -> Common:
-    """Return the prior of the common unknowns, with all offsets zero.
+    """Return the prior of the common unknowns, in which all offsets have the mean 0.
 
-    The datum has a prior mean and a standard deviation `datum` [m].
+    The prior of the datum has the mean `mean` and the standard deviation `datum` [m].
     """
     known = [FACTORS[name] for name in factors]
     spread = [*known, datum, *[OFFSET] * sensors]
@@ -72,7 +72,7 @@ def common_beforehand(
 
 
 def fixed_slopes(common: Floats) -> Floats:
-    """Append derivatives by the datum and the offsets to derivatives (n, s, f) by the factors."""
+    """Append columns for the datum and the offsets to the derivatives `common` (n, s, f)."""
     n, s, _ = common.shape
     offsets = np.broadcast_to(np.eye(s), (n, s, s))
     return np.concatenate([common, np.ones((n, s, 1)), offsets], axis=2)
@@ -81,7 +81,8 @@ def fixed_slopes(common: Floats) -> Floats:
 def fall(depth: Floats, still: Floats, point: Integers) -> Floats:
     """Return the increase (n, s) in the depth of each sensor per metre of slip down the line.
 
-    The points have depths (n, p), in still water (p,) [m]; the sensors are at the points (s,).
+    The points have the depths `depth` (n, p), and `still` (p,) in still water [m]. The sensors are
+    at the points with the indices `point` (s,).
     """
     result = np.zeros((len(depth), len(point)))
     for j, one in enumerate(point.tolist()):
@@ -99,7 +100,7 @@ LONGEST_MEMORY = 25  # maximum number of times over which the error correlation 
 
 
 def repeated(pull: Floats) -> float:
-    """Return the number of successive times that share an error, by autocorrelation of `pull`."""
+    """Return the integral time scale of `pull`: the number of times that share an error."""
     one = pull - pull.mean()
     whole = float(one @ one)
     total, chance = 1.0, 2.0 / np.sqrt(max(len(one), 1))
@@ -124,7 +125,7 @@ class LinearLaw:
     time: NDArray[np.datetime64]  # (n,) times
     share: Floats  # (n,) share of the record that has elapsed, 0 to 1
     known: NDArray[np.bool_]  # (n, s) whether a reading exists
-    raw: Floats  # (n, s) measured minus computed depths [m], with all unknowns zero
+    raw: Floats  # (n, s) measured minus computed depths [m] if all unknowns are zero
     left: Floats  # (n, s) as `raw`, but with the unknowns at the state of linearisation
     expected: Floats  # (n, s, s) expected covariance of `left` [m²]
     fixed: Floats  # (n, s, q) derivatives of the readings with respect to the unknowns of `Common`
@@ -143,7 +144,7 @@ class LinearLaw:
         return np.asarray((ROBUST + self.known.sum(axis=1)) / (ROBUST + misfit))
 
     def pulls(self, seen: Floats, left: Floats) -> Floats:
-        """Return (n, q) gradients of the log-likelihood, for residuals (n, s), slopes (n, s, q)."""
+        """Return log-likelihood gradients (n, q), for slopes (n, s, q) and residuals (n, s)."""
         return np.asarray(np.einsum("n,nsq,nst,nt->nq", self.weight, seen, self.inverse, left))
 
     def normal(self, seen: Floats) -> Floats:
@@ -152,15 +153,15 @@ class LinearLaw:
         return np.asarray(np.einsum("nsq,nsr->qr", seen, heavy @ seen))
 
 
-MISHUNG = -1  # code of a sensor that hangs elsewhere throughout, in place of a time
-RAMPS: Mapping[int, float] = {-2: 1.0, -3: 0.3}  # share of the record of a drift, by its code
+MISHUNG = -1  # code, instead of a time, of a sensor at a wrong place for the whole record
+RAMPS: Mapping[int, float] = {-2: 1.0, -3: 0.3}  # duration of each drift, as a share of the record
 
 
 def moved_by(code: int, fall: Floats, share: Floats) -> Floats:
     """Return the change (n,) in the reading of a sensor per metre of offset, slip or drift.
 
-    The code is 0 for an offset, the index of the time of a slip, `MISHUNG` for a wrong place on the
-    line, or a key of `RAMPS` for a drift; `fall` and `share` are as in `LinearLaw`.
+    The code is 0 for an offset, `MISHUNG` for a wrong place on the line, a key of `RAMPS` for a
+    drift, or the index of a time for a slip at that time. `fall` and `share` are as in `LinearLaw`.
     """
     if code in RAMPS:
         return np.minimum(share / RAMPS[code], 1.0)
@@ -168,18 +169,19 @@ def moved_by(code: int, fall: Floats, share: Floats) -> Floats:
 
 
 def chance_of(code: int, times: int) -> tuple[float, float]:
-    """Return the log prior probability of a fault of `moved_by`, and the deviation of its size."""
+    """Return the log prior probability of the fault `code`, and the deviation of its size."""
     if code in RAMPS:
         return float(np.log(DRIFTS / len(RAMPS))), DRIFT
     return float(np.log(SLIPPED / times if code > 0 else MISPLACED / 2.0)), ELSEWHERE
 
 
 def step_times(law: LinearLaw, covariance: Floats, columns: Sequence[Floats]) -> list[int]:
-    """Find the most likely start of each of several candidate changes in the readings.
+    """Find the most likely start of each candidate change in the readings.
 
-    Each change lasts to the end of the record, has the effect `columns` (n, s) on the readings for
-    a size of 1 m, and is fitted jointly with the common unknowns of prior covariance (q, q). Return
-    the index of the time at which each starts; 0 means the whole record, or too few readings.
+    Each change lasts to the end of the record. One of `columns` (n, s) is the effect of a change of
+    1 m on the readings. Each change is fitted jointly with the common unknowns, which have the
+    prior covariance (q, q). Return the index of the time at which each change starts. The index is
+    0 if the change covers the whole record, or if there are too few readings to find its start.
     """
     inverse = np.linalg.inv(law.normal(law.fixed) + np.linalg.inv(covariance))
     left = law.raw - law.fixed @ (inverse @ law.pulls(law.fixed, law.raw).sum(axis=0))
@@ -213,11 +215,11 @@ instruments; the net buoyancy of all buoyant pieces; and the lengths of cables a
 DATUM = 0.01  # prior deviation of the error common to all depths, as a share of the water depth
 OFFSET = 1.0  # prior deviation of the offset of a sensor [m]
 ELSEWHERE = 20.0  # prior deviation of the displacement of a slipped or misplaced sensor [m]
-MISPLACED, SLIPPED = 0.01, 0.01  # probabilities: misplaced from the start, slips during the record
+MISPLACED, SLIPPED = 0.01, 0.01  # prior probabilities of a misplaced sensor and of a slip
 MOVED = 0.01  # probability that the whole mooring is moved to another depth during the record
 # probability that a current is false in direction or size, by its quality flag
 FALSE: Mapping[int, float] = {0: 0.01, 1: 0.01, 2: 0.03, 3: 0.10, 4: 0.30, 8: 0.10}
 DRIFT, DRIFTS = 5.0, 0.01  # prior deviation of a drift over the record [m], and its probability
-TIDE = 1.0  # deviation of tide and air pressure [m], unless the sea level is given: `RESIDUAL_TIDE`
-RESIDUAL_TIDE = 0.15
-NOISE = 0.2  # deviation of a depth from pressure at one time [m]
+TIDE = 1.0  # deviation of tide and air pressure [m]
+RESIDUAL_TIDE = 0.15  # deviation that remains if the sea level is given [m]
+NOISE = 0.2  # standard deviation of the error of a single depth, measured by a pressure sensor [m]

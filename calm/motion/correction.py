@@ -40,7 +40,7 @@ from calm.records.record import Levels, Record
 
 _DEVIATION: Attributes = {"standard_name": "depth standard_error"}
 _DEPTH: Attributes = {"standard_name": "depth", "positive": "down"}
-# dimensions besides time, unit, meaning and attributes of variables added to a batch result
+# variables added to a batch result: dimensions after time, and (unit, meaning, attributes)
 OF_MOTION: Mapping[str, tuple[tuple[str, ...], tuple[str, str, Attributes]]] = {
     "clamp_depth_sd": (
         ("clamp",), ("m", "standard deviation of the depth of the clamped instrument", _DEVIATION),
@@ -55,7 +55,7 @@ OF_MOTION: Mapping[str, tuple[tuple[str, ...], tuple[str, str, Attributes]]] = {
         "m", "depth of the sensor computed from the currents alone, without fitting", _DEPTH,
     )),
 }  # fmt: skip
-OF_CURRENTS = frozenset({"current_factor", "current_doubt", "plain_depth"})  # need a current
+OF_CURRENTS = frozenset({"current_factor", "current_doubt", "plain_depth"})  # for measured currents
 MEASURED, ESTIMATED, MISSING = 1, 8, 9  # flags of depths, from the flag table of OceanSITES
 FLAGGED = {"clamp_depth": ["clamp_depth_sd"], "depth_top": ["depth_sd"]}
 _OF_DOCUMENT = {
@@ -159,7 +159,7 @@ def about(mooring: Design) -> Attributes:
 
 
 def depth_flags(one: MooringMeasurements, profiles: Profiles) -> dict[str, NDArray[np.int8]]:
-    """Return a flag for each depth: measured by a pressure of the point, estimated, or missing."""
+    """Return a flag for each depth: measured by a sensor at the point, estimated, or missing."""
     clamps, depth = profiles.clamp_depth.shape[1], points(profiles)
     flag = np.where(np.isfinite(depth), ESTIMATED, MISSING).astype(np.int8)
     for j, point in enumerate(one.point.tolist()):
@@ -204,7 +204,7 @@ class Task:
     def columns(self, start: int, stop: int) -> tuple[Profiles, dict[str, NDArray[np.float64]]]:
         """Estimate the line at the times from `start` to `stop`, in the most likely currents.
 
-        Return the profiles, and further columns, by the names of `OF_MOTION`.
+        Return the profiles, and further columns with the names of `OF_MOTION`.
         """
         times, smoother = slice(start, stop), self.smoother
         one = self.measured.at(times)
@@ -220,7 +220,7 @@ class Task:
             forward, offset = smoother.best, smoother.offset[times]
             depth, deviation = smoother.depth[times], smoother.deviation[times]
             read, surface = smoother.read(times), smoother.surface[times]
-        # inferred currents may exceed the limit of measured ones, which is for errors in files
+        # inferred currents may exceed the speed limit, which is meant for errors in files
         limit = self.mooring.file.environment.maximum_speed
         share = np.minimum(1.0, (1.0 - 1e-9) * limit / np.maximum(np.hypot(read.u, read.v), 1e-9))
         likely = forward.solve(read.level, share * read.u, share * read.v)
@@ -258,9 +258,10 @@ class Task:
 def without_current(
     profiles: Profiles, lost: NDArray[np.bool_], false: NDArray[np.bool_] | None
 ) -> Profiles:
-    """Replace the results with NaN at the times `lost` (n,), too far from any measured current.
+    """Set the results to NaN at the times `lost` (n,), which are far from any measured current.
 
-    Their status becomes "implausible-current" where `false` is true, and "no-current" elsewhere.
+    The status of such a time becomes "implausible-current" if `false` is true at this time, and
+    otherwise "no-current".
     """
     status = np.where(lost, STATUSES.index("no-current"), profiles.status)
     if false is not None:

@@ -11,7 +11,7 @@ from calm.physics.line import Floats
 
 @dataclass(frozen=True)
 class ReadCurrents:
-    """Currents u, v to east and north [m/s] at levels [m], each (n, k), to solve the line."""
+    """Currents u to the east and v to the north [m/s] at the depths `level` [m], each (n, k)."""
 
     level: Floats
     u: Floats
@@ -22,13 +22,16 @@ class ReadCurrents:
 class Linear:
     """Depths of the points, linearised about a state of the currents."""
 
-    logs: Floats  # (n, g) logarithms of the factors on the currents, which are the state
+    logs: Floats  # (n, g) the state: logarithms of the factors on the currents
     depth: Floats  # (n, p) depths at the state [m]
     slope: Floats  # (n, p, g) derivatives of the depths with respect to the state
-    common: Floats  # (n, p, f) derivatives by the logarithms of the common factors
+    common: Floats  # (n, p, f) derivatives with respect to the logarithms of the common factors
 
     def moved(self, logs: Floats, depth: Floats) -> Linear:
-        """Return the model at a state of known depths, with slopes updated by Broyden's method."""
+        """Return the model at the state `logs`, at which the depths are `depth`.
+
+        The slopes are updated by Broyden's method.
+        """
         step = logs - self.logs
         size = (step**2).sum(axis=1)[:, None]
         miss = depth - self.depth - np.einsum("npg,ng->np", self.slope, step)
@@ -48,6 +51,6 @@ class SpeedLaw:
     kept: Linear | None = None
 
     def read(self, level: Floats) -> ReadCurrents:
-        """Return currents in one direction, with the mean speeds at the levels (n, k) [m]."""
+        """Return currents of the mean speeds at the levels (n, k) [m], all in one direction."""
         u = np.tile(np.exp(self.mean), (len(level), 1))
         return ReadCurrents(level, u, np.zeros_like(u))

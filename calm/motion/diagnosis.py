@@ -31,12 +31,12 @@ from calm.motion.suspects import Suspect, line_suspects
 from calm.motion.unknown_currents import SEABED, unknown_state
 from calm.physics.line import Floats
 
-# odds above which a fault is reported without measured currents: the line may be the cause instead
+# odds above which a fault is reported if no currents were measured, as the line may be the cause
 LIKELY_ALONE = 1000.0
 MOST = 8  # maximum number of faults
 CLOCKS, FURTHEST = 0.01, 13.0  # probability of a wrong clock, and the maximum lag searched [h]
 GAIN = 0.02  # prior deviation of a gain
-GAINS, ALL_GAINS = 0.01, 0.001  # probability of a wrong gain in one sensor, and in all
+GAINS, ALL_GAINS = 0.01, 0.001  # probability of a wrong gain of one sensor, and of all
 LEAST = {
     "moved": 3.0, "clock": 0.08, "gain": 0.003, "offset": 2.5, "drift": 1.0, "slip": 1.5,
     "currents": 0.1, "buoyancy": 0.06, "length": 0.004, "drag": 0.3,
@@ -60,7 +60,7 @@ class _Found:
     value: float  # size of the last fault
     deviation: float  # standard deviation of this size
     left: Floats  # (n, s) residuals [m]
-    # (n,) derivative of the log-likelihood of each time by the size of the last fault
+    # (n,) derivative of the log-likelihood of each time with respect to the size of the last fault
     pulls: Floats
 
 
@@ -68,7 +68,7 @@ Weighed = list[tuple[Suspect, float]]
 
 
 def diagnosed(task: Task) -> tuple[Fault, ...]:
-    """Return the likely faults of sensors, currents and line, unless the task has them already."""
+    """Return the faults of the task, or else diagnose faults of sensors, currents and line."""
     if task.faults is not None:
         return task.faults
     law, causes = law_near(task)
@@ -80,7 +80,7 @@ def diagnosed(task: Task) -> tuple[Fault, ...]:
 def law_near(task: Task) -> tuple[LinearLaw | None, list[Suspect]]:
     """Return the linear model of the readings, and possible faults of line and currents.
 
-    There is no model without measurements, and there are no such faults of inferred currents.
+    The model is None if there are no measurements. If currents are inferred, the list is empty.
     """
     times = chosen_times(task.measured, task.smoother is None)
     if not len(times):
@@ -103,7 +103,7 @@ def law_near(task: Task) -> tuple[LinearLaw | None, list[Suspect]]:
 
 
 class Diagnosis:
-    """Search for faults in a record; the likelihood of the pressures decides between faults."""
+    """Search for faults in a record, which are weighed by the likelihood of the pressures."""
 
     def __init__(self, task: Task, law: LinearLaw, causes: Sequence[Suspect] = ()) -> None:
         self.causes = causes
@@ -132,8 +132,8 @@ class Diagnosis:
     def _at(self, late: float) -> Floats:
         """Return (n, s) depths read by the sensors `late` hours after each time [m].
 
-        Interpolation takes the slope and a quarter of the curvature. It neither amplifies nor
-        smooths noise; either would by itself favour a clock error.
+        The interpolation uses the whole slope, but a quarter of the curvature, so that it neither
+        amplifies nor smooths noise. Amplified or smoothed noise would itself favour a clock error.
         """
         whole = round(late / self.step) if self.step > 0.0 else 0
         part = late / self.step - whole if self.step > 0.0 else 0.0
@@ -142,7 +142,7 @@ class Diagnosis:
         return there + np.nan_to_num(bent)
 
     def faults(self) -> tuple[Fault, ...]:
-        """Find the likely faults; the odds of each fault allow for all other likely faults."""
+        """Find the likely faults, with odds that allow for all other likely faults."""
         taken: list[Suspect] = []
         while len(taken) < MOST:
             likely = self.weighed(taken)
@@ -195,9 +195,9 @@ class Diagnosis:
         return self.law.raw + sum(one.shift for one in taken)
 
     def fitted(self, taken: list[Suspect], last: Suspect | None, alike: float) -> _Found:
-        """Fit the sizes of the faults `taken` and `last`; compute the likelihood of the pressures.
+        """Fit the sizes of the faults `taken` and `last`, and return the likelihood of the result.
 
-        Errors are shared by `alike` successive times.
+        Each error persists for `alike` successive times.
         """
         whole = taken if last is None else [*taken, last]
         free = [one for one in whole if one.wide]
@@ -250,7 +250,7 @@ class Diagnosis:
         for j, label in enumerate(self.label):
             mine = sensors == j
             codes = dict.fromkeys(common_unknowns.RAMPS, "drift")
-            # inferred currents adapt to the zero of a sensor
+            # inferred currents would absorb the offset of a sensor
             if not self.alone:
                 codes |= dict.fromkeys((0, common_unknowns.MISHUNG), "offset")
             if slips[j]:

@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 SEVERAL = ("depth", "depth_sd", "depth_qc")  # variables added to a file of several instruments
-ONE = tuple(name.upper() for name in SEVERAL)  # and of a single instrument
+ONE = tuple(name.upper() for name in SEVERAL)  # and to a file of a single instrument
 _OF_OLD = ("DEPTH_quality_control", "DEPTH_UNCERTAINTY", "INSTRUMENT_DEPTH")
 NOMINAL = "NOMINAL_DEPTH"  # new name of the nominal depth `DEPTH` of a single instrument
 _TIMES = ("time", "TIME", "Time")
@@ -54,7 +54,7 @@ _OF_MOTION = ("title", "keywords", "references")  # attributes that describe a m
 
 @dataclass(frozen=True)
 class Instruments:
-    """A file of one or more instruments, to which estimated depths are to be added."""
+    """A file of one or more instruments, which receives the estimated depths."""
 
     path: Path
     clock: str  # name of the time variable
@@ -148,8 +148,8 @@ def write_depths(
 ) -> list[str]:
     """Write a copy of an instrument file with depths, standard deviations and flags added.
 
-    Depths come from a dataset of `calm motion`, and are interpolated over gaps of at most `gap`;
-    the names and hashes of their source files, `inputs`, are added to the history. Return the names
+    Depths come from a dataset of `calm motion`, and are interpolated over gaps of at most `gap`.
+    `inputs`, the names and hashes of the source files, are added to the history. Return the names
     of the instruments that get no depths because they match no point of the line.
     """
     import xarray as xr
@@ -160,7 +160,7 @@ def write_depths(
     for j, at in enumerate(instruments.point):
         if at is not None:
             depth[:, j], spread[:, j], flag[:, j] = at_own_times(result, at, instruments.time, gap)
-    # raw values, except texts: characters would be split again
+    # read raw values, but join the characters of texts, which xarray splits again to write them
     if engine := cf_files.engine_of(instruments.path):
         with xr.open_dataset(
             instruments.path, engine=engine, mask_and_scale=False, decode_times=False,
@@ -241,7 +241,7 @@ def _drop_references(copy: Dataset) -> None:
 
 
 def _without_depths(copy: Dataset, instruments: Instruments) -> Dataset:
-    """Remove old depth variables from a file of one instrument; rename its nominal depth."""
+    """Remove old depth variables from a file of one instrument, and rename its nominal depth."""
     if instruments.along is not None:
         return copy
     nominal = None
@@ -311,7 +311,7 @@ def _mooring(result: Dataset) -> str:
 
 
 def _at_depths(copy: Dataset, depth: str, instruments: Instruments) -> None:
-    """List the depths among the coordinates of the measurements."""
+    """Add the depth variable to the attribute `coordinates` of the measurements."""
     others = {*instruments.names, instruments.clock, *copy.dims}
     for name, variable in copy.variables.items():
         along = {*copy[depth].dims} <= {*variable.dims}
@@ -327,9 +327,9 @@ def _describe(
 ) -> None:
     """Add global attributes on depths and mooring, and a line in the history.
 
-    Attributes of the original file are kept, except for the range of depths. If the original has
-    one of several attributes that begin with the same word, such as `creator_name`, none of these
-    is added.
+    Attributes of the original file are kept, except for the range of depths. An attribute is added
+    only if no attribute of the original file begins with the same word, such as `creator` in
+    `creator_name`.
     """
     name, _, mark = instruments.names
     mooring = _mooring(result)

@@ -16,8 +16,8 @@ from calm.motion.currents_law import Linear, ReadCurrents
 from calm.motion.measurements import MooringMeasurements
 from calm.physics.line import Floats, Line
 
-STEP = 0.05  # step of the logarithms for numerical derivatives
-UNMEASURED = 1e4  # deviation of the reading of a sensor without a measurement [m]
+STEP = 0.05  # step in a logarithm for numerical derivatives
+UNMEASURED = 1e4  # standard deviation assigned to a missing reading [m]
 
 
 class LineResponse:
@@ -29,12 +29,12 @@ class LineResponse:
         self.measured, self.forward, self.shifted = measured, forward, shifted
 
     def depths(self, read: ReadCurrents, logs: Floats, forward: Forward | None = None) -> Floats:
-        """Return (n, p) depths [m] in the currents multiplied by factors with logarithms (n, k)."""
+        """Return depths (n, p) [m] in the currents multiplied by the factors exp(`logs`) (n, k)."""
         factor = np.exp(logs)
         return (forward or self.forward).depths(read.level, read.u * factor, read.v * factor)
 
     def linear(self, read: ReadCurrents, logs: Floats) -> Linear:
-        """Return the depths and their slopes, for logarithms (n, k) of factors on the currents."""
+        """Return the depths and their slopes, in the currents multiplied by exp(`logs`) (n, k)."""
         factor = np.exp(logs)
         u, v = read.u * factor, read.v * factor
         there, slopes = self.forward.slopes(read.level, u, v)
@@ -45,7 +45,7 @@ class LineResponse:
 
 
 def _slopes(ahead: Sequence[Floats], there: Floats) -> Floats:
-    """Return (n, p, m) derivatives from the depths (n, p) after a step in each of m unknowns."""
+    """Return derivatives (n, p, m); `ahead` are the depths after a step in each of m unknowns."""
     columns = [(one - there) / STEP for one in ahead]
     return np.nan_to_num(np.stack(columns, -1)) if columns else np.zeros((*there.shape, 0))
 
@@ -97,7 +97,10 @@ class Forward:
         return points(self.solve(depth, u, v))
 
     def slopes(self, depth: Floats, u: Floats, v: Floats) -> tuple[Floats, Floats]:
-        """Return depths (n, p) of the points [m], and derivatives (n, p, 2 k) by u, then v [s]."""
+        """Return depths (n, p) of the points [m], and their derivatives (n, p, 2 k) [s].
+
+        The first k derivatives are with respect to u, the others with respect to v.
+        """
         profiles, slopes = self._batch.slopes(u, v, depth)
         return points(profiles), slopes
 
@@ -123,7 +126,7 @@ def labels_of(mooring: Design) -> tuple[str, ...]:
 
 
 def instruments_of(mooring: Design) -> list[int]:
-    """Return the points that may be instruments: clamped items except floats, pieces by role."""
+    """Return the points of clamped items except floats, and of pieces with role `instrument`."""
     pieces = mooring.file.pieces
     clamps = clamps_down(pieces)
     fixed = [i for i, clamp in enumerate(clamps) if clamp.component.role != "float"]
@@ -132,20 +135,20 @@ def instruments_of(mooring: Design) -> list[int]:
 
 
 SPAN = 0.25  # correlation length of the error in knockdown, as a share of the line
-# Local error of a point, from bends at floats and clamps, as a share of its knockdown. Without it,
-# dune2 is 8 % better, synthetic moorings with ten-minute meters 3 % worse, and RAPID's depths
-# without currents up to 26 % worse
+# Local error of a point, from bends at floats and clamps, as a share of its knockdown. Without
+# this error, the depths of dune2 are 8 % better, but those of synthetic moorings with ten-minute
+# meters are 3 % worse, and those of RAPID without currents up to 26 % worse
 LOCAL = 0.3
 
 
 def own_errors(depth: Floats, still: Floats, learnt: bool) -> Floats:
     """Return the error covariance (n, p, p) of the computed depths, for a relative error of 1 [m²].
 
-    If the distribution of the currents was not `learnt`, the error at a point is a share of its
-    knockdown, and errors are correlated over a quarter of the line. A learnt distribution absorbs
-    such errors. The error of each stretch of the line is then a share of the contribution of the
-    stretch to the knockdown. The error at a point is the sum over the stretches below it, plus a
-    smaller share of the knockdown of the point. The sum varies smoothly between two sensors.
+    Errors are correlated over a quarter of the line. If the distribution of the currents was not
+    `learnt`, the error at a point is a share of its knockdown. A learnt distribution absorbs errors
+    of this kind. Each stretch of the line then has its own error, which is a share of the
+    contribution of the stretch to the knockdown. The error at a point is the sum over the stretches
+    below it, plus a smaller share of its knockdown. The sum varies smoothly between two sensors.
     """
     if not learnt:
         own = np.maximum(np.nan_to_num(depth - still), 0.0)

@@ -83,7 +83,7 @@ class Clock:
 def clocks_of(mooring: Design, first: np.datetime64) -> dict[str, Clock]:
     """Return the measured clock errors of the deployed instruments, by label.
 
-    If the deployment has no date, the lag grows from the time `first`.
+    If the deployment has no date, the errors grow from zero at the time `first`.
     """
     deployed = mooring.file.deployed
     found = {}
@@ -138,7 +138,7 @@ def hung_currents(
     ]
 
 
-CERTAIN = 2.0  # least excess cost of the second-best order of sensors for a unique match [m]
+CERTAIN = 2.0  # a match is unique if the second-best order of sensors costs this much more [m]
 
 
 def matched_by_place(
@@ -147,8 +147,8 @@ def matched_by_place(
     """Match sensors to instruments by nominal depth, in order down the line.
 
     The chosen match preserves the order and has the smallest sum of differences in depth. Return a
-    mapping from the index of each sensor to the index of its point, and notes in sentences. The
-    indices of the points that are instruments are given as `places`.
+    mapping from the index of each sensor to the index of its point, and notes in sentences.
+    `places` are the indices of the points that are instruments.
     """
     lacking = [one.named for one in given if not np.isfinite(one.nominal)]
     if lacking:
@@ -167,13 +167,13 @@ def matched_by_place(
     ]
 
 
-CLEAR = 10.0  # least excess cost of the second-best order of instruments for a unique match [m]
+CLEAR = 10.0  # a match is unique if the second-best order of instruments costs this much more [m]
 
 
 def points_of(series: Sequence[Identity], line: LinePlaces) -> tuple[dict[int, int], list[str]]:
     """Match series to points by label or serial number.
 
-    Series that have neither a label nor a serial number are matched by nominal depth, in order down
+    A series without a label or a matching serial number is matched by nominal depth, in order down
     the line. Return a mapping from the index of each matched series to the index of its point, and
     notes on matched and unmatched series. A UsageError is raised if no series matches a point, or
     if the order is ambiguous.
@@ -212,7 +212,7 @@ def points_of(series: Sequence[Identity], line: LinePlaces) -> tuple[dict[int, i
 
 
 def named_point(one: Identity, line: LinePlaces) -> int | None:
-    """Return the only point that has the label of an instrument, or else its serial number."""
+    """Return the only point with the label of an instrument, or else with its serial number."""
     at = _index(one.label, line.label)
     if at is None:
         at = _index(one.serial.lstrip("0"), [serial.lstrip("0") for serial in line.serial])
@@ -242,9 +242,9 @@ def in_order(
 ) -> tuple[dict[int, int], list[int]]:  # fmt: skip
     """Match series to points by nominal depth, in order down the line.
 
-    Each metre of difference between the nominal depth and the depth of the point costs `depths`.
-    Each metre of difference between nominal and actual distance of neighbours costs `spacings`; an
-    error common to all nominal depths does not change these distances. A UsageError is raised
+    Each metre between the nominal depth of a series and the depth of its point costs `depths`. Each
+    metre between the nominal and the actual distance of two neighbours costs `spacings`. An error
+    that is common to all nominal depths does not change their distances. A UsageError is raised
     unless the second-best match costs at least `clear` metres more.
 
     Return a mapping from the index of each matched series to the index of its point, and the
@@ -278,9 +278,9 @@ def aligned(
 ) -> tuple[tuple[float, list[int]], tuple[float, list[int]] | None]:
     """Find the cheapest and the second-cheapest way to match each of `few` depths to one of `many`.
 
-    Matches preserve the order of the increasing depths [m]; costs are those of `in_order`. Each
-    match is returned as its cost, and the index in `many` for each of `few`. The second is None if
-    there is only one match.
+    Matches preserve the order of the increasing depths [m]; costs are those of `in_order`. A match
+    is returned as its cost, and a list with the index in `many` of each of `few`. The second match
+    is None if only one is possible.
     """
     places = len(many)
 

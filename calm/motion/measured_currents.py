@@ -29,26 +29,26 @@ from calm.motion.measurements import FREE, MooringMeasurements, chosen_times, ne
 from calm.motion.smoother import BLOCK, StateSpace, smoothed
 from calm.physics.line import Floats
 
-TURNS, ENOUGH = 20, 0.05  # most Gauss-Newton steps, and the change in depth that ends them [m]
+TURNS, ENOUGH = 20, 0.05  # maximum number of steps, and change in depth that ends them [m]
 PLACED = (1, 3, 5, 8, 11)  # steps after which the factors are updated
-# step of the logarithm of a factor for its slopes, and change above which slopes are renewed
+# step in the logarithm of a factor for its slopes, which are renewed after a larger change
 FACTOR_STEP = 0.05
 STALE = 0.03  # change in a current above which its slopes are renewed [m/s]
 LONGEST = 0.5  # maximum change in a current in one step [m/s]
 
-MOST_LEVELS, KNOTS = 8, 12  # number of levels up to which each is a knot, and knots for more levels
+MOST_LEVELS, KNOTS = 8, 12  # maximum number of levels that are all knots, and knots for more levels
 APART = 2.0  # distance below which levels share a knot [m]
-ABOVE = 5.0  # height of a knot above the top of a line that extends above the levels [m]
-BELOW = 20.0  # least distance from the lowest level to the seabed for a knot half-way [m]
+ABOVE = 5.0  # height of a knot above the top of the line, if the top is above all levels [m]
+BELOW = 20.0  # distance from lowest level to seabed above which a knot is added half-way [m]
 
-# error of a current meter: constant part [m/s], and share of the speed; times a factor by flag
+# error of a current meter: constant part [m/s] and share of the speed; `FLAGGED` multiplies both
 METER = 0.02, 0.10
 # default factors on the meter error, by quality flag
 FLAGGED: Mapping[int, float] = {0: 1.0, 1: 1.0, 2: 1.5, 3: 2.0, 4: 4.0, 8: 3.0}
 # limits of the estimated factor on the meter error: the current at even a perfect meter differs
 # from the current on the line around it
 FLAG_RANGE = (0.6, 15.0)
-FEWEST = 20  # least number of readings for this estimate
+FEWEST = 20  # least number of readings to estimate such a factor
 STUDENT = 4.0  # degrees of freedom of Student's t distribution of the readings
 ALIKE_HOURS = 1.0  # time over which the error of a meter persists [h]
 LEAST_SPREAD = 0.02  # least deviation of a current about its mean [m/s]
@@ -63,15 +63,16 @@ METERS_ALIKE = 0.02  # error common to all meters of a record, as a share of the
 STRETCHES = 10  # number of stretches with separate errors in knockdown
 SHARE, SHARES = 0.07, (0.01, 0.4)  # prior and limits of the error share of a stretch
 LINE_HOURS = 6.0  # correlation time of the error of a stretch [h]
-TIDE_HOURS = 2.4  # correlation time of the tide [h]: that of a semidiurnal tide falls to 1/e
+TIDE_HOURS = 2.4  # time in which the correlation of a semidiurnal tide falls to 1/e [h]
 # typical hourly step of datum and offsets [m]; steps and initial values have Student's t
 # distribution with one degree of freedom, which allows rare steps that are many times as large
 STEP = 0.02
-# weight 1 / (1 + n) of the square of an unknown in its variance, for n degrees of freedom; a place
-# of 2 cm begins at a variance of 1 m², and shrinks unless it exceeds four deviations
+# weight 1 / (1 + n) of the square of an unknown in its variance, for n degrees of freedom. The
+# prior deviation of a place is 2 cm. The variance of a place begins at 1 m², and shrinks unless the
+# place exceeds four standard deviations of the error of its estimate
 TAILS = {"datum": 1.0 / 2.0, "place": 1.0 / 5.0}
-ZEROS = 2.0  # variance of Student's law with four degrees of freedom over that of a normal law
-SETTLED = 6  # number of steps before the line error is estimated, as it would absorb sensor steps
+ZEROS = 2.0  # ratio of the variance of Student's law, with four degrees of freedom, to a normal law
+SETTLED = 6  # iterations before the line error is estimated; it would otherwise absorb sensor steps
 LONGER = 30.0  # maximum factor by which a step of the line error is lengthened
 FURTHEST = 0.7  # maximum logarithm of a factor
 
@@ -103,9 +104,9 @@ class Knots:
 def knots_of(place: Floats, top: float, seabed: float) -> Knots:
     """Choose the knots for levels of measured current.
 
-    If there are few levels, each is a knot. A knot may be added above the top of the line, and
-    another below the lowest level. The levels have the depths `place` (k,) in still water, in any
-    order [m].
+    `place` (k,) are the depths of the levels in still water [m], in any order. If there are few
+    levels, each is a knot. A knot may be added above the top of the line, and another below the
+    lowest level.
     """
     order = np.argsort(place, kind="stable")
     chosen: list[int] = []
@@ -125,10 +126,10 @@ def knots_of(place: Floats, top: float, seabed: float) -> Knots:
 
 @dataclass(frozen=True)
 class Columns:
-    """Slices of the state vector: currents at the knots, errors of the stretches, and tide.
+    """Slices of the state vector, one for each kind of unknown.
 
-    These are followed by the logarithms of the factors, the datum, and errors in the zeros of the
-    sensors and in their places on the line.
+    The order is: currents at the knots, errors of the stretches, tide, logarithms of the factors,
+    datum, errors in the zeros of the sensors, and errors in the places of the sensors on the line.
     """
 
     current: slice
@@ -243,10 +244,9 @@ class CurrentSmoother:
         return whole[:, :count], whole[:, count:]
 
     def depths(self, state: Floats, factor: Floats, times: NDArray[np.int64] | slice) -> Floats:
-        """Return (n, p) depths of the points [m] in currents (n, 2 K) relative to their mean.
+        """Return depths (n, p) of the points [m] in currents `state` (n, 2 K) relative to the mean.
 
-        The factors have the logarithms (f,); the currents are those of the times with these
-        indices.
+        `factor` (f,) are the logarithms of the factors; the currents are those at the `times`.
         """
         forward = self.forward(factor)
         return forward.depths(self.knot_depth[times], *self.currents(state))
@@ -262,7 +262,7 @@ class CurrentSmoother:
         return self._forwards[key]
 
     def linear(self) -> Floats:
-        """Return (n, p) depths of the points [m], and renew slopes if the state has changed."""
+        """Return depths (n, p) of the points [m], and renew the slopes of changed states."""
         now, factor = self.state[:, self.columns.current], self.factor
         far = np.abs(now - self._slopes_at).max(axis=1) > STALE
         far |= (np.abs(factor - self._slopes_factor) > FACTOR_STEP).any()
@@ -305,7 +305,7 @@ class CurrentSmoother:
         return edges, own, np.exp(-np.abs(middle[:, None] - middle) / span)
 
     def by_line(self, there: Floats) -> Floats:
-        """Return derivatives (n, p, z) of depths (n, p) [m] by relative errors of z stretches."""
+        """Return derivatives (n, p, z) of depths with respect to relative errors of z stretches."""
         edges, own, _ = self._stretches
         order = np.argsort(self.still, kind="stable")
         down = np.maximum(np.nan_to_num(there - self.still), 0.0)
@@ -335,9 +335,9 @@ class CurrentSmoother:
         return StateSpace(fade, steady, np.zeros_like(fade), steady, seen, flow, noise)
 
     def law(self, there: Floats) -> tuple[StateSpace, Floats]:
-        """Return the state-space model about the current state, and slopes (n, p, q) of the depths.
+        """Return the state-space model linearised at `state`, and slopes (n, p, q) of the depths.
 
-        The points have the depths (n, p) at the current state [m].
+        `there` (n, p) are the depths of the points at this state [m].
         """
         one, at, own = self.measured, self.columns, self.meter_law()
         n, flows = own.fade.shape
@@ -399,9 +399,9 @@ class CurrentSmoother:
     def solve(self, slips: Sequence[tuple[int, int, float]] = ()) -> None:
         """Iterate until the depths converge.
 
-        `slips` are steps in sensor readings with which to begin: indices of sensor and time, and
-        size [m]. Without them, the iterations for two or three sensors may attribute the step of
-        one sensor to an offset of another.
+        `slips` are likely steps in the readings: index of the sensor, index of the time, and size
+        [m]. Without `slips`, the iterations for two or three sensors may attribute the step of one
+        sensor to an offset of another.
         """
         self.stepped = self.usual.copy()
         for sensor, time, size in slips:
@@ -425,7 +425,7 @@ class CurrentSmoother:
 
     @property
     def _steps(self) -> Floats:
-        """Changes (n, s) in datum and places since the first time, in the depth of a sensor [m]."""
+        """Changes (n, s) in the readings since the start, from steps in datum and places [m]."""
         stay = self.state[:, self.columns.stays]
         gone = stay - stay[0]
         sensors = len(self.measured.label)
@@ -456,15 +456,15 @@ class CurrentSmoother:
         value = self.common_covariance @ (pulls.sum(axis=0) / alike)
         self.factor = np.clip(value[: len(self.names)], -FURTHEST, FURTHEST)
         self._there = None
-        # drag times the square of the speed fits the pressures
+        # the pressures constrain only the drag times the square of the speed
         drag = 2.0 * METERS_ALIKE * np.array([name.endswith("_drag") for name in self.names])
         self.common_covariance[: len(drag), : len(drag)] += np.outer(drag, drag)
 
     def _grown(self, step: float) -> float:
-        """Return the relative error of the line after a step of its logarithm.
+        """Return the relative error of the line after a step in the logarithm of this error.
 
-        Steps of expectation and maximisation are short if the pressures constrain the error poorly;
-        they are lengthened as long as they have the same sign.
+        Expectation and maximisation takes short steps if the pressures constrain the error poorly.
+        Successive steps with the same sign are therefore lengthened.
         """
         same = step * self._last > 0.0
         self._longer = min(1.5 * self._longer, LONGER) if same else max(self._longer / 3.0, 1.0)
@@ -473,7 +473,7 @@ class CurrentSmoother:
         return float(np.clip(self.scales.share * np.exp(whole), *SHARES))
 
     def _heavy(self, square: Floats) -> Floats:
-        """Return initial variances by Student's laws, from the expected squares."""
+        """Return initial variances of Student-distributed unknowns from their expected squares."""
         wide = self.begin + self.tail * (square - self.begin)
         return np.asarray(np.maximum(self.begin, wide), np.float64)
 
@@ -626,8 +626,8 @@ class CurrentSmoother:
     def doubt(self) -> Floats:
         """Probability (n, k) that the meter reading at a level is unrelated to the current there.
 
-        It follows from the prior odds and two normal densities of the reading: one has the variance
-        of the meter error, the other also includes the variability of the current.
+        The probability follows from the prior odds and two normal densities of the reading. One has
+        the variance of the meter error; the other also includes the variability of the current.
         """
         one, noise = self.measured, self.meter_noise
         spread = np.square(self.knots.level @ self.spread)
@@ -641,8 +641,8 @@ class CurrentSmoother:
     def by_meters(self, times: NDArray[np.int64]) -> tuple[LinearLaw, ReadCurrents, Linear]:
         """Return a linear model of the pressures at several times, with currents from meters alone.
 
-        Also return these currents at the knots, and the line in these currents with its slopes by
-        the logarithm of a factor on all speeds.
+        Also return these currents at the knots, and the line in these currents. The slopes of the
+        line are with respect to the logarithm of a factor on all speeds.
         """
         one, at, factor, law = self.measured, self.columns, self.factor, self.meter_law()
         wide = WIDER**2 * law.steady

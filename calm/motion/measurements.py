@@ -27,7 +27,7 @@ MOST_TIMES = 500  # maximum number of times for the common unknowns, spread even
 
 Times = NDArray[np.datetime64]
 
-FREE = -1  # index for a level without a point or a sensor
+FREE = -1  # index, instead of a point, for a level that is not on the line
 
 
 @dataclass(frozen=True)
@@ -100,7 +100,7 @@ def level_names(measured: MooringMeasurements, labels: Sequence[str]) -> tuple[s
 
 
 def nearest(time: Times, wanted: Times) -> Integers:
-    """Return the index (n,) of the time nearest to each wanted time; in a tie, the earlier time."""
+    """Return the index (n,) of the time nearest to each wanted time; the earlier one in a tie."""
     after = np.clip(np.searchsorted(time, wanted), 0, len(time) - 1)
     before = np.maximum(after - 1, 0)
     earlier = np.abs(wanted - time[before]) <= np.abs(time[after] - wanted)
@@ -112,9 +112,10 @@ def common_times(
 ) -> Times:
     """Choose the common times of all measurements.
 
-    The times of the first current record, or of the first sensor if there is none, are extended by
-    those of the others that are more than half the median time step away. Of several added readings
-    within a quarter of the step (a burst), only the first is used.
+    The first times are those of the first current record, or of the first sensor if there are no
+    currents. Each other record adds the times that are more than half the median time step away
+    from all times chosen so far. Of several added times within a quarter of the step (a burst),
+    only the first is used.
     """
     everything: list[CurrentMeasurements | InstrumentSeries] = [*currents, *sensors]
     times = everything[0].time
@@ -154,14 +155,14 @@ def interpolated(time: Times, value: Floats, wanted: Times, gap: np.timedelta64)
 
 
 def _measured_at(one: InstrumentSeries, wanted: Times, gap: np.timedelta64) -> Floats:
-    """Interpolate depths to other times; a reading at exactly that time is used even if missing."""
+    """Interpolate depths to the times `wanted`; a missing reading at such a time stays missing."""
     at = np.minimum(np.searchsorted(one.time, wanted), len(one.time) - 1)
     between = interpolated(one.time, one.value, wanted, gap)
     return np.where(one.time[at] == wanted, one.value[at], between)
 
 
-FAR_NEIGHBOURS = 4.0  # maximum steps between the readings before and after a time
-SPIKE, ALIKE = 6.0, 3.0  # deviations of a spike, and limit for all other sensors
+FAR_NEIGHBOURS = 4.0  # maximum interval between the readings before and after a time, in time steps
+SPIKE, ALIKE = 6.0, 3.0  # least deviation of a spike, and limit for others, in usual deviations
 
 
 def without_spikes(
@@ -202,7 +203,8 @@ def exclude_readings(
 ) -> tuple[MooringMeasurements, list[tuple[str, int, float, str]]]:
     """Remove the readings that `wrong` (n, s) marks.
 
-    Also return the label, number of readings, and first depth [m] and time of each such sensor.
+    Also return, for each sensor with such readings, the label, the number of these readings, and
+    the depth [m] and the time of the first.
     """
     first = [(j, at) for j, at in enumerate(wrong.argmax(axis=0).tolist()) if wrong[at, j]]
     counts, time = wrong.sum(axis=0).tolist(), np.datetime_as_string(measured.time, "s")
@@ -224,9 +226,9 @@ def joined(
 ) -> MooringMeasurements:
     """Combine all measurements on common times, with levels and sensors from the top down.
 
-    Each sensor has one of `points`, whose labels and depths in still water [m] are `labels` and
-    `still`. Values are interpolated over gaps of at most `gap`. The heights [m] of `sea_level` may
-    have any datum.
+    `points` are the indices of the points of the sensors; `labels` and `still` are the labels and
+    the depths in still water [m] of all points. Values are interpolated over gaps of at most `gap`.
+    The heights [m] of `sea_level` may have any datum.
     """
     time = common_times(currents, sensors)
     order = np.argsort([still[point] for point in points], kind="stable")

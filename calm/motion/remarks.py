@@ -20,10 +20,10 @@ ALL, LINE, CURRENTS = "all sensors", "the line", "all currents"
 # faults of the line and its currents, not of sensors; their sizes are logarithms
 OF_LINE = ("currents", "buoyancy", "length", "drag", "fouling")
 LIKELY = 20.0  # odds above which a fault is reported
-FAR_OFFSET = 2.5  # offset of all sensors above which it is reported, in prior standard deviations
+FAR_OFFSET = 2.5  # least offset of all sensors that is reported, in prior standard deviations
 FAR_DATUM = 10.0  # offset of all sensors that is always reported [m]
-# error in length above which it is reported if currents were not measured, in prior deviations;
-# inferred currents absorb much of an error in length
+# least error in length that is reported if no currents were measured, in prior deviations;
+# inferred currents absorb much of such an error
 FAR_LENGTH = 5.0
 FAR_FACTOR = 3.0  # deviations of a drag factor from 1 above which it absorbs another error
 WORST = 0.3  # share of the knockdown above which the error of the line is reported
@@ -50,7 +50,7 @@ class Fault:
 
     @property
     def size(self) -> float:
-        """Deviation of `value` from no fault, as a logarithm for faults of the line."""
+        """Size of the fault: 0 without a fault; the logarithm of `value` for `OF_LINE`."""
         if self.kind in OF_LINE:
             return float(np.log(self.value))
         return self.value - (self.kind == "gain")
@@ -137,7 +137,7 @@ class Fault:
 
 
 def false_current_times(names: Sequence[str], time: Times, doubt: Floats) -> dict[str, Times]:
-    """Return, for each of k levels by name, the times (n,) at which its doubt (n, k) is large."""
+    """Return the times of probably false currents by name of the level, from `doubt` (n, k)."""
     hit = doubt > FALSE
     return {name: time[hit[:, k]] for k, name in enumerate(names) if hit[:, k].any()}
 

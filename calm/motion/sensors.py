@@ -197,7 +197,7 @@ def read_sea_level(path: Path) -> tuple[NDArray[np.datetime64], Floats]:
 
 
 CONSTANT = 1e-6  # range of depths up to which a sensor counts as constant [m]
-MISPLACED = 20.0  # tolerance for the shallowest depth against still water [m]; or a factor of two
+MISPLACED = 20.0  # tolerance of the shallowest depth [m]; a factor of up to two is also tolerated
 UNITS = {"psi for dbar?": 1.45038, "dbar for psi?": 0.68948}  # ratios of such readings to true ones
 ALIKE = 0.03  # relative tolerance of that ratio, doubled for several sensors
 APART = 3.0  # least distance between exchanged sensors [m]
@@ -209,12 +209,12 @@ def plausible(
 ) -> tuple[InstrumentSeries, list[str]]:
     """Remove implausible readings from a sensor, and return notes about the removal.
 
-    A reading is implausible if it is far shallower than the sensor in still water, at the depth
-    `place` [m] (taken on deck, or a fill value), if it is far below the seabed [m], or if the
-    sensor is stuck. Only the first of several readings at the same time is kept. Depths are
-    corrected if the readings on deck show that the pressures are absolute. If most readings are too
-    shallow or too deep, they are kept, because the sensor itself is wrong; `unusable` then reports
-    the sensor.
+    Three kinds of readings are implausible: readings far shallower than `place`, the depth of the
+    sensor in still water [m] (readings on deck, or fill values); readings far below the seabed [m];
+    and readings of a stuck sensor. Only the first of several readings at the same time is kept.
+    Depths are corrected if the readings on deck show that the pressures are absolute. If most
+    readings are too shallow or too deep, all are kept, because the sensor itself is wrong;
+    `unusable` then reports the sensor.
     """
     notes = []
     again = np.zeros(len(sensor.time), bool)
@@ -279,7 +279,7 @@ def _stuck(value: Floats) -> NDArray[np.bool_]:
     return same & lively
 
 
-AIR = instrument_text.AIR / 1.0082  # excess depth [m], at 1.0082 dbar/m of sea water
+AIR = instrument_text.AIR / 1.0082  # excess depth by air pressure [m], at 1.0082 dbar/m of water
 NEAR_AIR, ON_DECK = 2.5, 0.6  # tolerances for that excess: in calm water, and on deck [m]
 
 
@@ -302,9 +302,10 @@ def air_notes(depth: Floats, place: Floats) -> list[str]:
     ]
 
 
-# Limits for another unit of all readings, which random errors of 1 to 20 m for each sensor, with or
-# without a common error, pass in at most 0.3 % of trials: share of the errors that may remain, of
-# those as read and of those after removal of their mean; and least error as read [m]
+# Limits for the remark that all readings have another unit: the errors that may remain after
+# conversion, as a share of the errors as read and of the standard deviation of these errors; and
+# the least error as read [m]. Random errors of 1 to 20 m for each sensor, with or without a common
+# error, pass these limits in at most 0.3 % of trials
 EXPLAINED, BEYOND, LEAST = 0.05, 0.2, 1.0
 
 
@@ -312,8 +313,9 @@ def metre_notes(measured: Floats, expected: Floats, latitude: float) -> list[str
     """Return a remark if depths in metres seem to be recorded as pressures in dbar, or the reverse.
 
     The (s,) measured depths are then about 1 % less or more than the expected depths [m], which do
-    not depend on these readings. The expected depths must agree as they are, because a common error
-    and a wrong length of the line together would have the same effect.
+    not depend on these readings. After conversion, the measured depths must agree with the expected
+    depths without a common offset, because a common offset and a wrong length of the line together
+    would have the same effect as another unit.
     """
     import gsw
 

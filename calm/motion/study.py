@@ -263,7 +263,7 @@ def judge_hidden(
 
 
 def several(measured: MooringMeasurements, hidden: Sequence[str]) -> list[str]:
-    """Return the labels of the sensors that a cross-validation withholds in turn, at least two."""
+    """Return the labels of the sensors to withhold in turn; there must be at least two."""
     rest = [label for label in measured.label if label not in hidden]
     if len(rest) < 2:
         raise UsageError("--cross-validate: at least two sensors are needed")

@@ -39,15 +39,16 @@ class Suspect:
     column: Floats  # (n, s) change in the measured depths per unit of the size of the fault
     wide: float  # prior standard deviation of the size; 0 if the size is fixed
     log: float  # logarithm of the prior probability of the fault
-    # (n, s) change in the measured depths by a fault of fixed size [m]; otherwise 0
+    # (n, s) change in the measured depths due to a fault of fixed size [m]; otherwise 0
     shift: Floats | float = 0.0
 
 
 def line_suspects(task: Task, read: ReadCurrents, at: Linear, share: Floats) -> Iterator[Suspect]:
     """Yield possible faults of the line and its measured currents.
 
-    The line is given in currents at several times, with slopes by the logarithm of a factor on all
-    speeds; `share` is the elapsed share of the record at the times with an equilibrium.
+    `at` is the line in the currents `read` at several times. The slopes of the line are with
+    respect to the logarithm of a factor on all speeds. `share` is the elapsed share of the record
+    at the times with an equilibrium.
     """
     factors = task.common.factors
     good = np.isfinite(at.depth).all(axis=1)
@@ -83,9 +84,9 @@ def meter_remarks(measured: MooringMeasurements, names: Sequence[str]) -> list[s
     A meter is reported if it disagrees with its two nearest meters, and these two agree with each
     other. Agreement is measured by the complex correlation r of the currents over the whole record.
     The phase of r is the mean angle between the two currents (Kundu 1976, J. Phys. Oceanogr. 6,
-    238-242). For n independent times, it has the standard deviation sqrt((1 - r²) / (2 r² n)). A
-    correlation with the mirrored current indicates that the east and north components are
-    exchanged.
+    238-242). For n independent times, the standard deviation of the phase is
+    sqrt((1 - r²) / (2 r² n)). A correlation with the mirrored current indicates that the east and
+    north components are exchanged.
     """
     flow = np.where(measured.flag <= GOOD, measured.u + 1j * measured.v, np.nan)
 
@@ -136,7 +137,7 @@ def meter_remarks(measured: MooringMeasurements, names: Sequence[str]) -> list[s
     return remarks
 
 
-STRETCHED, AMISS = 1.25, 20.0  # most ratio of stretched to unstretched length, and tolerance [m]
+STRETCHED, AMISS = 1.25, 20.0  # maximum ratio of stretched to unstretched length, and tolerance [m]
 
 
 def distances_of(mooring: Design) -> Floats:
@@ -181,16 +182,16 @@ def torn(
 
 
 EITHER_SIDE = 4  # number of times averaged on either side of a step
-CLEAR = 8.0  # least ratio of the step of the lowest sensor to its usual change
+CLEAR = 8.0  # least ratio of the step of the lowest sensor to the usual change of this sensor
 LEAST_STEP = 3.0  # least size of a step [m]
 
 
 def common_step(measured: MooringMeasurements, still: Floats) -> Fault | None:
     """Find a step common to the depths of all sensors; return None if there is no such step.
 
-    The whole mooring has then moved to another depth. A current lowers the lowest sensor less than
-    the highest, whereas a sinking mooring lowers all equally. The search is for records without
-    measured currents, where inferred currents would otherwise explain the step.
+    Such a step means that the whole mooring has moved to another depth. A current lowers the lowest
+    sensor less than the highest, whereas a sinking mooring lowers all equally. The search is for
+    records without measured currents, because inferred currents would otherwise explain the step.
     """
     whole = np.flatnonzero(np.isfinite(measured.depth).all(axis=1))
     order = np.argsort(still[measured.point], kind="stable")

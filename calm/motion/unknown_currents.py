@@ -3,11 +3,11 @@
 The unknowns at each time are the speeds at a few depths (knots). All knots share one direction,
 which has no effect on the depths. The logarithms of the speeds have a normal distribution, whose
 mean and covariance are learnt from the record by expectation and maximisation (Dempster, Laird and
-Rubin 1977): each time is fitted by Gauss-Newton steps under the present distribution, which is then
-updated to the mean and covariance of the fits, including their uncertainty. If the pressures do not
-constrain the distribution, it stays at its prior. The line itself also has an error that varies
-smoothly along its length. It is a share of the knockdown, estimated from the pressures as an
-average over several trial values.
+Rubin 1977). Each time is fitted by Gauss-Newton steps under the present distribution. The
+distribution is then updated to the mean and covariance of the fits, including their uncertainty. If
+the pressures do not constrain the distribution, it stays at its prior. The line itself also has an
+error that varies smoothly along its length. This error is a share of the knockdown, estimated from
+the pressures as an average over several trial values.
 
 The fits of the times used for learning are stored. At every other time, the estimate starts from
 the stored fit with the nearest depths.
@@ -33,14 +33,14 @@ KNOTS, FINER = 6, 2.2  # number of knots, and the exponent of their spacing, fin
 DOWN = 0.9  # share of the times at which the top of the line is at or above the uppermost knot
 # prior speed: at the top [m/s], decay depth [m] (the scale of the thermocline), constant [m/s]
 SURFACE, DECAY, LEAST = 0.3, 400.0, 0.03
-# deviations of the logarithm of the prior speed, common to all knots and for each knot, and the
-# share of the knots over which these are correlated
+# deviations of the logarithm of the prior speed: of the part common to all knots, and of the part
+# for each knot; and the share of the knots over which the second part is correlated
 ALL, EACH, ALIKE = 0.7, 1.4, 0.5
 PRIOR = 20.0  # weight of the prior distribution, as a number of times of the record
 MOST_TIMES = 240  # number of times from which the distribution is learnt
-TURNS, FIRST = 12, 2  # iterations, and the first ones, which leave the distribution unchanged
-# share of the learning times, those of largest knockdown, from which the distribution is updated;
-# at the others, the tide hides the effect of the currents
+TURNS, FIRST = 12, 2  # iterations, of which the first leave the distribution unchanged
+# share of the learning times from which the distribution is updated: those with the largest
+# knockdown, because the tide hides the effect of the currents at the other times
 STRONGER = 0.5
 LONGEST = 1.0  # maximum step of a logarithm
 SHARES = (0.03, 0.05, 0.07, 0.1, 0.15, 0.2, 0.3, 0.4)  # trial errors of the line
@@ -49,8 +49,10 @@ USUAL, WITHIN = 0.07, 0.7  # prior median of the error share, and the deviation 
 # currents the factor on the length absorbs larger errors
 SEABED = 0.0005
 LEAST_PART = 5.0  # percentile taken as the shallowest depth of a sensor
-HIGH, HIGH_KNOWN = 3.0, 0.1  # height above still water that is in doubt [m], and its uncertainty
-AGAIN = 3  # number of iterations at a time, starting from a stored fit
+# height of a sensor above its still-water depth that counts as an error of the file [m], and the
+# uncertainty of this error, as a share
+HIGH, HIGH_KNOWN = 3.0, 0.1
+AGAIN = 3  # number of iterations for each time, starting from a stored fit
 
 
 @dataclass(frozen=True)
@@ -129,10 +131,11 @@ def posterior(
 
 
 def with_knots(measured: MooringMeasurements, mooring: Design) -> MooringMeasurements:
-    """Return the measurements with knots of unknown current in place of their current levels.
+    """Return the measurements with their levels replaced by knots of unknown current.
 
-    Pressures contain no information on the current above the line, so the uppermost knot is at the
-    depth of its top in strong currents, from the readings of the uppermost sensor.
+    Pressures contain no information on the current above the line. The uppermost knot is therefore
+    at the depth of the top of the line in strong currents, from the readings of the uppermost
+    sensor.
     """
     still, seabed = Forward(mooring, {}).still, float(mooring.water.depth)
     sensor = int(np.argmin(still[measured.point]))
@@ -227,8 +230,8 @@ def learn_currents(
 def raised(mooring: Design, measured: MooringMeasurements) -> float:
     """Return the depth error [m] of the sensor that is farthest above its still-water depth.
 
-    Currents only lower a line, so the water depth, a length or the position in the file is then
-    wrong. The result is negative, or 0 if no sensor is far above its still-water depth.
+    Currents only lower a line, so this error means that the water depth, a length or the position
+    in the file is wrong. It is negative, or 0 if no sensor is far above its still-water depth.
     """
     depth = measured.depth - measured.moved[:, None]
     known = np.isfinite(depth).any(axis=0)
@@ -250,11 +253,9 @@ class _Fit:
         return self.law.read(self.moments.measured.level_depth)
 
     def linear(self, logs: Floats) -> Linear:
-        """Return the line in these currents, with its slopes."""
         return self.moments.linear(self.read, logs)
 
     def posterior(self, at: Linear, common: Common | None = None) -> Posterior:
-        """Return the posterior of the currents, linearised at a state."""
         one, still = self.moments.measured, self.moments.forward.still
         return posterior(one, at, self.law.covariance, common or self.common, still)
 
@@ -326,7 +327,7 @@ def _placed(begun: Common, known: Common, fit: _Fit, at: Linear, found: Posterio
 
 
 def unknown_state(moments: LineResponse, common: Common) -> CurrentsState:
-    """Find the most likely currents at each time, from the stored model with the closest depths."""
+    """Find the most likely currents at each time, starting from the stored fit nearest in depth."""
     law, one = common.law, moments.measured
     assert law is not None and law.kept is not None
     read, kept, still = law.read(one.level_depth), law.kept, moments.forward.still

@@ -21,6 +21,7 @@ from typing import Any, TypeVar, get_args, get_type_hints
 
 import numpy as np
 
+from calm.errors import UsageError, one_line
 from calm.physics.law_kinds import FROM_MATH, NOTHING, Layout, Row, kind_asked, kind_of, record_type
 
 Law = Callable[..., Any]
@@ -113,7 +114,17 @@ def _address_of(law: Law, kinds: tuple[Any, ...], result: Any) -> int:
     """Return the address of the machine code of a law for given kinds of arguments.
 
     The code is read from the cache, or compiled if the cache does not contain it.
+
+    Raise UsageError if LLVM does not work, or ModuleNotFoundError if it is not installed.
     """
+    if (error := fault()) is not None:
+        if isinstance(error, ModuleNotFoundError):
+            raise error
+        raise UsageError(
+            "the package llvmlite, which compiles the solver, does not work here "
+            f"({type(error).__name__}: {one_line(str(error))}); install it again or in another "
+            "version"
+        ) from error
     import llvmlite.binding as llvm
 
     for name in FROM_MATH:
@@ -143,12 +154,38 @@ def _address_of(law: Law, kinds: tuple[Any, ...], result: Any) -> int:
         code = target.emit_object(module)
         if file:
             _store(file, code)
-    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), target)
+    return _loaded(code)
+
+
+def _loaded(code: bytes) -> int:
+    """Load machine code, and return the address of its entry."""
+    import llvmlite.binding as llvm
+
+    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _machine())
     engine.add_object_file(llvm.ObjectFileRef.from_data(code))
     engine.finalize_object()
     _engines.append(engine)
     address: int = engine.get_function_address(_ENTRY)
     return address
+
+
+@cache
+def fault() -> Exception | None:
+    """Compile and call a small function; return the exception if LLVM is missing or does not work.
+
+    LLVM may be installed without support for this machine, or be forbidden to make code executable.
+    """
+    try:
+        import llvmlite.binding as llvm
+
+        _machine_name()
+        module = llvm.parse_assembly(f'define i32 @"{_ENTRY}"() {{ ret i32 1 }}')
+        address = _loaded(_machine().emit_object(module))
+        if ctypes.CFUNCTYPE(ctypes.c_int)(address)() == 1:
+            return None
+        return RuntimeError("compiled code gives a wrong result")
+    except Exception as error:
+        return error
 
 
 on_compilation: list[Callable[[], None]] = []
@@ -268,11 +305,11 @@ def cache_folder() -> Path | None:
 
 
 def is_cached(law: str) -> bool:
-    """Return whether the cache folder contains compiled code for a law."""
+    """Return whether LLVM works and the cache folder contains compiled code for a law."""
     folder = cache_folder()
-    return (
-        folder is not None and next(folder.glob(f"*.{law}-*-{_machine_name()}.o"), None) is not None
-    )
+    if folder is None or fault() is not None:
+        return False
+    return next(folder.glob(f"*.{law}-*-{_machine_name()}.o"), None) is not None
 
 
 def _user_cache() -> Path:

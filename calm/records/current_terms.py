@@ -77,6 +77,10 @@ _PART_OF_HOUR = re.compile(r"[^\d.,:]\d\d(?::?\d\d)?[.,]")
 """Decimal point after hours or minutes, as in `06.30`, which `fromisoformat` reads as 0.3 s."""
 
 
+YEARS = 1678, 2261
+"""First and last year in which times can be counted in nanoseconds from 1970."""
+
+
 class TimeChoiceError(ValueError):
     """Error raised if a requested time is invalid or outside the record, or is not given."""
 
@@ -84,7 +88,7 @@ class TimeChoiceError(ValueError):
 def parse_time(text: str) -> np.datetime64:
     """Parse an ISO 8601 time to datetime64[us]; a time without a zone is UTC.
 
-    Raise TimeChoiceError if the text is not a valid time.
+    Raise TimeChoiceError if the text is not a valid time, or not in the years of `YEARS`.
     """
     try:
         if _PART_OF_HOUR.search(text):
@@ -92,6 +96,8 @@ def parse_time(text: str) -> np.datetime64:
         time = datetime.fromisoformat(text.strip())
     except ValueError:
         raise TimeChoiceError(f"`{text[:40]}` is not a time; write 2026-03-01T06:00") from None
+    if not YEARS[0] <= time.year <= YEARS[1]:
+        raise TimeChoiceError(f"`{text[:40]}` is not in the years {YEARS[0]} to {YEARS[1]}")
     return np.datetime64(time if time.tzinfo is None else time.astimezone(UTC).replace(tzinfo=None))
 
 
@@ -105,7 +111,7 @@ def choose_time(times: NDArray[np.datetime64], wanted: str | None) -> tuple[int,
     """Return the index of the time nearest to the requested time, and a notice if the two differ.
 
     Raise TimeChoiceError if the file has no times, if no time is requested although the file has
-    several, or if the requested time lies outside the record.
+    several, if the requested time lies outside the record, or if the file has this time twice.
     """
     if not len(times):
         raise TimeChoiceError("the file has no times")
@@ -119,6 +125,8 @@ def choose_time(times: NDArray[np.datetime64], wanted: str | None) -> tuple[int,
     if not first.astype("datetime64[s]") <= moment <= last:
         raise TimeChoiceError(f"{time_text(moment)} is outside the record, {span}")
     index = int(np.abs(times - moment).argmin())
+    if np.count_nonzero(times == times[index]) > 1:
+        raise TimeChoiceError(f"the file has two profiles of {time_text(times[index])}; remove one")
     if times[index] == moment:
         return index, None
     used = f"the current at {time_text(times[index])} is used"

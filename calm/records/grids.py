@@ -6,7 +6,7 @@ Seabed depths may come from GEBCO, EMODnet or a survey.
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -290,7 +290,7 @@ class SeabedGrid:
     east, north : distances of the point east and north of the origin [m]
     """
 
-    path: str
+    path: str = field(compare=False)
     sha256: str
     latitude: float
     longitude: float

@@ -83,7 +83,8 @@ def read_columns(
         if gaps is not None and gaps.any():
             pairs = zip(cells, gaps[whole].tolist(), strict=True)
             cells = ["nan" if lacks and is_gap(cell) else cell for cell, lacks in pairs]
-        together = _read_together(cells, unit, known[name], gaps is not None)
+        missing = np.zeros(len(whole), bool) if gaps is None else gaps[whole]
+        together = _read_together(cells, unit, known[name], missing)
         if together is not None:
             values[name][whole] = together
             continue
@@ -111,11 +112,14 @@ def _bare(cells: Sequence[str | None]) -> bool:
 
 
 def _read_together(
-    cells: Sequence[str | None], unit: str, quantity: QuantityRange, gaps: bool
+    cells: Sequence[str | None], unit: str, quantity: QuantityRange, gaps: Booleans
 ) -> Floats | None:
-    """Convert a column to SI; None if a cell is not a plain number within the limits."""
+    """Convert a column to SI; None if a cell is not a plain number within the limits.
+
+    In the rows of the mask `gaps`, a value may be missing.
+    """
     numbers = plain_numbers(cells) if unit else None
-    if numbers is None or (not gaps and np.isnan(numbers).any()):
+    if numbers is None or (np.isnan(numbers) & ~gaps).any():
         return None
     numbers = numbers * unit_factor(unit, quantity.dimension)
     beyond = (numbers <= quantity.above) | (numbers < quantity.at_least)

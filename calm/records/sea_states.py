@@ -98,6 +98,10 @@ class SeaState:
     longest: float | None = None
     shortest: float | None = None
 
+    def severity(self) -> tuple[float, float]:
+        """Return a sort key: the higher sea, or the steeper of two equally high seas, is larger."""
+        return self.significant_height, -self.peak_period
+
     @property
     def cut_off(self) -> float:
         """Highest angular frequency at which the response to waves is computed [rad/s]."""

@@ -266,10 +266,12 @@ def _turned_levels(depth: Floats, current: NDArray[np.complex128]) -> Iterator[s
     for i in range(1, len(depth) - 1):
         three = current[:, i - 1 : i + 2]
         above, own, below = three[np.isfinite(three).all(axis=1)].T
-        size = [float(np.linalg.norm(one)) for one in (above, own, below)]
+        with np.errstate(over="ignore"):
+            size = [float(np.linalg.norm(one)) for one in (above, own, below)]
         if (
             own.size < MANY
             or not min(size)
+            or np.inf in size
             or not 0.8 * min(size[::2]) <= size[1] <= 1.25 * max(size[::2])
         ):
             continue

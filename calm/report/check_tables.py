@@ -6,6 +6,7 @@ from collections.abc import Hashable, Iterable, Iterator, Sequence
 from itertools import groupby
 from operator import attrgetter
 
+from calm.checks.assess import RULES
 from calm.checks.criterion import limit_value_text
 from calm.checks.finding import Finding, State, grouped_by, worst_of
 from calm.checks.inventory import InventoryItem
@@ -26,10 +27,14 @@ def joined(findings: Iterable[Finding]) -> list[list[Finding]]:
     """Group findings of one rule that differ only in component and values.
 
     Findings that are unknown because the same value of a component is missing form their own group.
+    All failures of a rule of the anchor form one group, with or without any capacity left.
     """
-    return [*grouped_by(
-        findings, lambda one: (one.rule, one.state, one.missing or _wording(one))
-    ).values()]  # fmt: skip
+
+    def cause(one: Finding) -> Hashable:
+        same = RULES[one.rule].of_anchor and one.state is State.FAIL
+        return one.rule, one.state, one.missing or same or _wording(one)
+
+    return [*grouped_by(findings, cause).values()]
 
 
 def _wording(finding: Finding) -> str:

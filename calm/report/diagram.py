@@ -16,7 +16,7 @@ from calm.drawing.schematic.pen import INK, SOFT, Pen, picture, svg_text, wrappe
 from calm.drawing.schematic.shown_parts import TextRow, one_line
 from calm.drawing.schematic.symbols import LINES, Sign, draw_cable, figure_of
 from calm.quantities import QUANTITIES, say
-from calm.report.open_items import assessment_verdict
+from calm.report.open_items import assessment_verdict, short
 from calm.report.provenance import title_pairs
 from calm.report.sheet import end_descriptions, leg_title
 
@@ -305,13 +305,18 @@ _Fields = tuple[tuple[str, tuple[str, ...]], ...]
 """One row of the title block: names and lines of text."""
 
 
+_LONGEST = 240
+"""Longest text in a field of the title block; a longer text would leave no room for the line."""
+
+
 def _fields(deck: Deck, page_size: PageSize) -> list[_Fields]:
     """Return the rows of the title block, without the page number."""
     environment = DEFAULT_ENVIRONMENT if deck.environment == OWN else deck.environment
     known = {**dict(title_pairs(deck.file)), **_known(deck), "environment": environment}
     columns = _COLUMNS[page_size]
     room = (page_size.size[0] - 2 * _MARGIN) / columns - 2 * _PAD
-    fields = [(name, tuple(wrapped(one_line(known.get(name, "")), room, FONT))) for name in _FIELDS]
+    texts = {name: short(one_line(known.get(name, "")), _LONGEST) for name in _FIELDS}
+    fields = [(name, tuple(wrapped(text, room, FONT))) for name, text in texts.items()]
     return [tuple(fields[start : start + columns]) for start in range(0, len(fields), columns)]
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from math import floor, log10
+from math import floor, inf, isfinite, log10
 from typing import TYPE_CHECKING, NamedTuple
 
 from calm.case import Result
@@ -334,15 +334,18 @@ def _figure(one: Compared) -> tuple[str, str, Cell, Cell, str]:
     change = ""
     if isinstance(one.before, float) and isinstance(one.after, float) and before.text != after.text:
         assert quantity is not None
-        text = quantity.format(one.after - one.before)
+        rise = one.after - one.before
+        text = quantity.format(rise) if isfinite(rise) else "-"
         change = text if text.startswith("-") else f"+{text}"
     return one.title, quantity.display_unit if quantity else "", before, after, change
 
 
 def _text(value: float | str | None, quantity: Quantity | None, state: State | None) -> str:
-    """Format a value; an unknown value is replaced by the state of its rule, or a dash."""
+    """Format a value; an unknown value is replaced by the state of its rule, or a dash. An infinite
+    utilisation means that no capacity is left.
+    """
     if isinstance(value, str):
         return value
     if value is None or quantity is None:
         return "-" if state is None else state.value
-    return quantity.format(value)
+    return "none left" if value == inf else quantity.format(value)

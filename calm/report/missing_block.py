@@ -138,7 +138,8 @@ def _how_to_use(ids: Iterable[str], places: Places) -> list[str]:
     )
     if False in defined:
         advice.append(
-            f"Copy the other entries into the section `components:`, {below}."
+            f"Copy {'the other' if True in defined else 'these'} entries into the section "
+            f"`components:`, {below}."
             if below
             else "Add this section to the mooring file. It completes components of the catalogue."
         )

@@ -224,9 +224,9 @@ def _item(group: Sequence[Finding], number: int, *, keys: bool) -> OpenItem:
 
 
 def _extreme(finding: Finding) -> tuple[int, float]:
-    """Return a sort key for findings without a utilisation, by state and size of the value."""
-    size = abs(finding.value or 0.0)
-    return finding.state.severity, -size if finding.sense == ">=" else size
+    """Return a sort key for findings without a utilisation, by state and value."""
+    value = finding.value or 0.0
+    return finding.state.severity, -value if finding.sense == ">=" else abs(value)
 
 
 def _head(group: Sequence[Finding], worst: Finding) -> str:

@@ -5,6 +5,7 @@ import json
 import os
 import platform
 from collections.abc import Iterable, Sequence
+from dataclasses import fields, is_dataclass
 from datetime import UTC, datetime
 from importlib.metadata import version
 from importlib.util import find_spec
@@ -98,10 +99,19 @@ def input_hash(files: Sequence[MooringFile]) -> str:
 
 def canonical(value: Any) -> str:
     """Serialise a value as JSON with sorted keys and no blanks; a model becomes a JSON object."""
-    return json.dumps(
-        value, sort_keys=True, separators=(",", ":"),
-        default=lambda one: one.model_dump() if isinstance(one, BaseModel) else vars(one),
-    )  # fmt: skip
+    return json.dumps(value, sort_keys=True, separators=(",", ":"), default=_object)
+
+
+def _object(one: Any) -> dict[str, Any]:
+    known: dict[str, Any]
+    if isinstance(one, BaseModel):
+        known = one.model_dump()
+    elif is_dataclass(one):
+        # a field that a comparison omits, such as the path of a record, is no input
+        known = {each.name: getattr(one, each.name) for each in fields(one) if each.compare}
+    else:
+        known = vars(one)
+    return known
 
 
 _ALSO_EXCLUDED = (

@@ -79,7 +79,7 @@ def sea_response_part(analysis: WaveAnalysis) -> ReportPart:
 
 
 def _highest(analysis: WaveAnalysis) -> MooringInSea:
-    return max(analysis.states, key=lambda state: state.sea.significant_height)
+    return max(analysis.states, key=lambda state: state.sea.severity())
 
 
 def _lives(known: Sequence[PieceFatigue]) -> Table:

@@ -14,6 +14,7 @@ from calm.case.leg_result import LegResult
 from calm.case.profilers import ProfilerTravel
 from calm.case.result_tables import ClampRow, ComponentRow, item_numbers, rows_down, table_columns
 from calm.case.strumming import StrummingBand
+from calm.case.warnings import counted_working_load
 from calm.checks.finding import State, percent_used
 from calm.checks.posture import reaches_the_surface
 from calm.checks.strength import safety_factor
@@ -292,15 +293,18 @@ def safety_state(result: AnyResult, record: ComponentRow) -> State | None:
     """Return FAIL if the safety factor is too small or the working load is exceeded, else None.
 
     The required factor on the breaking load depends on `checks.safety_factor`, on the material, and
-    on whether the mooring is a surface mooring. An unknown safety factor (NaN) is not a failure.
+    on whether the mooring is a surface mooring. The working load of a synthetic rope counts only
+    without a breaking load, as in the rule `strength`. An unknown safety factor (NaN) is not a
+    failure.
     """
     # the intended purpose of a single leg is irrelevant if the whole net is shown
     alone = not (result.several or result.towed)
     meant = alone and reaches_the_surface(result.legs[0].leg)
     surface = meant or result.type == "surface"
-    least = safety_factor(record.part.component, result.file.checks.safety_factor, surface)
-    beyond = record.safety_factor < least or record.utilisation > 1.0
-    return State.FAIL if beyond else None
+    component = record.part.component
+    least = safety_factor(component, result.file.checks.safety_factor, surface)
+    loaded = record.utilisation > 1.0 and counted_working_load(component) is not None
+    return State.FAIL if loaded or record.safety_factor < least else None
 
 
 def _cells(

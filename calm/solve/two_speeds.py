@@ -11,7 +11,7 @@ from enum import Enum
 from functools import cache
 from importlib.util import find_spec
 
-from calm.physics.compiled import is_cached
+from calm.physics.compiled import fault, is_cached
 from calm.physics.line import Line
 from calm.solve.solution import Settings
 
@@ -55,7 +55,7 @@ class _Pace:
             return
         work = max(self.announced, self.work)
         if self.announced >= COMPILE_FROM or self.solved - self.announced >= UNANNOUNCED:
-            self.compiled = True
+            self.compiled = fault() is None
         elif work >= max(LOAD_FROM, 2.0 * self.checked_at):
             self.checked_at = work
             self.compiled = is_cached(self.solver.value)
@@ -79,7 +79,7 @@ def runs_compiled(
     if settings.compiled is not None:
         return settings.compiled
     if not _may_choose():
-        return os.environ.get("CALM_COMPILED") == "always" and _has_llvm()
+        return os.environ.get("CALM_COMPILED") == "always" and may_compile()
     if line is not None:
         pieces = len(line.length) + len(line.clamp_piece)
         count_lines(1.0, solver, max(pieces / TYPICAL_PARTS, 1.0))
@@ -103,7 +103,7 @@ def count_lines(lines: float, solver: CompiledPart, work: float | None = None) -
 
 def may_compile() -> bool:
     """Return whether a function that belongs to no `CompiledPart` may be compiled on first use."""
-    return os.environ.get("CALM_COMPILED") != "never" and _has_llvm()
+    return os.environ.get("CALM_COMPILED") != "never" and _has_llvm() and fault() is None
 
 
 def _may_choose() -> bool:

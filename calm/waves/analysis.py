@@ -194,7 +194,7 @@ def analyse(
                 f"water; the largest significant height is {SHALLOWEST * leg.water.depth:.1f} m"
             )
     solution = leg.equilibrium(leg.water)
-    highest = max(seas, key=lambda sea: sea.significant_height)
+    highest = max(seas, key=SeaState.severity)
     shortest = min(seas, key=lambda sea: sea.shortest or sea.peak_period)
     judged = [highest] if shortest == highest else [highest, shortest]
     setting, flow, accuracy = _settled(leg, solution, judged, toward)

@@ -126,6 +126,15 @@ def test_implausible_currents_have_no_result_and_are_reported(calm, write_moorin
     assert "the first at 2024-01-01T07:00, 0 m: 999.9 m/s" in done.err
 
 
+def test_currents_whose_squares_overflow_are_implausible(calm, folder, write_mooring):
+    times = (f"2024-01-{1 + hour // 24:02d}T{hour % 24:02d}:00" for hour in range(120))
+    rows = [f"{time},{depth},1e300,0.1" for time in times for depth in (0, 50, 100)]
+    (folder / "huge.csv").write_text("\n".join(["time,depth[m],u[m/s],v[m/s]", *rows]))
+    done = calm("batch", write_mooring(), "--currents", "huge.csv", "-o", "r.nc")
+    assert done.code == 3
+    assert "the first at 2024-01-01T00:00, 0 m: 1e+300 m/s" in done.err
+
+
 def test_a_declination_turns_what_is_magnetic(calm, write_mooring, record, folder):
     text = (folder / record).read_text()
     magnetic = text.replace("u[m/s],v[m/s]", "u[m/s magnetic],v[m/s magnetic]")

@@ -47,6 +47,13 @@ def unknowns(folder):
     return "m.yaml", "--catalog", "own.yaml"
 
 
+def test_a_file_that_defines_other_components_takes_all_entries(calm, folder):
+    (folder / "own.yaml").write_text(CATALOGUE + OWN.replace("  link", "link"), encoding="utf-8")
+    (folder / "m.yaml").write_text(f"{LINE}components:\n{SPACER}", encoding="utf-8")
+    done = calm("check", "m.yaml", "--catalog", "own.yaml", "--missing")
+    assert "# Copy these entries into the section `components:`, line 15 of m.yaml.\n" in done.out
+
+
 def test_the_block_names_each_component_once_with_its_keys_and_estimate(calm, unknowns):
     done = calm("check", *unknowns, "--missing")
     assert done.code == 1

@@ -383,3 +383,12 @@ def test_the_verdict_is_that_of_calm_check(calm, folder):
     assert (verdict["fails"], verdict["accepted"]) == (0, 1)
     pages, _, _ = pages_of((folder / "sheets" / "deck.pdf").read_bytes())
     assert packed(told) in "".join(pages)
+
+
+def test_a_title_block_of_long_texts_leaves_room_for_the_line(calm, write_mooring, folder):
+    """A name of 3000 letters once left none, and the columns of the diagram were never found."""
+    path = folder / write_mooring()
+    text = path.read_text()
+    path.write_text("name: " + "n" * 3000 + text[text.index("\n") :])
+    assert calm("deck", path.name, "-o", "sheets").code == 0
+    assert (folder / "sheets" / "diagram.svg").exists()

@@ -1,4 +1,5 @@
 import json
+import re
 
 import pytest
 
@@ -41,6 +42,13 @@ def test_what_changed(calm, two):
         {"where": "logger.at", "from": 10.0, "to": 12.0},
     ]
     assert (document["added"], document["removed"]) == (["tail", "lower"], [])
+
+
+def test_a_utilisation_without_any_capacity_is_said(calm, two, folder):
+    heavy = (folder / "b.yaml").read_text().replace("buoyancy: 2100 N", "buoyancy: 4500 N")
+    (folder / "b.yaml").write_text(heavy)
+    done = calm("diff", *two)
+    assert re.search(r"utilisation: Anchor sliding +[\d.]+. +none left! +-\n", done.out)
 
 
 def test_what_it_does_is_what_each_run_says(calm, two):

@@ -498,6 +498,24 @@ legs:
     assert "140.00 m long in total, but the ends are held 200.00 m apart" in told
 
 
+def test_rope_that_would_surface_is_told_by_the_float_of_its_leg(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "rope.yaml"
+    file.write_text("""\
+environment: {depth: 85 m}
+legs:
+  marker:
+    line:
+      - {use: sphere-ore-28in, label: marker buoy}
+      - {use: polypropylene-16, length: 100 m}
+      - {use: anchor-wheels-1}
+""")
+    assert run("run", file) == 3
+    told = capsys.readouterr().err
+    assert "above-surface: Besides marker buoy (piece 1), other parts of the leg would" in told
+
+
 SLOPE = """\
 environment:
   depth: 100 m

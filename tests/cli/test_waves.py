@@ -57,6 +57,13 @@ def test_the_table_and_the_object(calm, buoy):
     assert told["units"]["force"] == "N"
 
 
+def test_of_two_equally_high_seas_the_steeper_is_shown(calm, buoy, folder):
+    rows = "1,6,0.5\n1.5,8,0.3\n1.5,6,0.2\n"
+    (folder / "s.csv").write_text(f"significant_wave_height[m],peak_period[s],share\n{rows}")
+    shown = calm("waves", buoy(), "--scatter", "s.csv").out
+    assert "In the highest sea, Hs 1.5 m, Tp 6.0 s" in shown
+
+
 def test_the_band_measured_at_sea_and_other_cut_offs(calm, buoy):
     """In words and in a table; every piece has its tensions in the object."""
     text = calm("waves", buoy(), *SEA).out

@@ -291,3 +291,28 @@ def test_a_float_that_tips_over_at_a_step_of_the_current_leaves_the_lower_equili
     assert -solution.position[0, 2] == pytest.approx(expected, abs=NEAR * water.depth)
     found = calm.solve_profiles(mooring, water.u[None], water.v[None], water.level)
     assert found.depth_top[0, 0] == pytest.approx(expected, abs=1e-4 * water.depth)
+
+
+TETHER = """
+environment:
+  depth: 60 m
+  current: {columns: [depth m, speed knot, toward deg], rows: [[0, 1.2, 40], [60, 0.3, 40]]}
+line:
+  - {use: buoy-nexsens-cb-450, label: buoy, length: 0.9 m, drag_area: 0.5 m^2, cd: 0.8}
+  - {use: chain-buoy-10, length: 3 m}
+  - {use: polypropylene-16, length: 22 m, label: floating}
+  - {use: viny-16in, label: mid float}
+  - {use: polyester-16, length: 45 m, label: sinking}
+  - {use: sbe37-bar}
+  - {use: release-port-lf}
+  - {use: chain-buoy-13, length: 4 m}
+  - {use: anchor-wheels-1}
+"""
+
+
+def test_another_equilibrium_of_nearly_equal_loads_is_told_by_its_line_on_the_seabed() -> None:
+    result = calm.load("tether.yaml", text=TETHER).solve()
+    lying = result.other_equilibrium["grounded_length"]
+    assert lying > 0.1 and result.anchor.grounded_length == 0.0
+    (told,) = [one for one in result.warnings if one.startswith("Another equilibrium")]
+    assert f"buoyancy in use, {lying:.1f} m of line on the seabed and an anchor load of" in told

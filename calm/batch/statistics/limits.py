@@ -90,8 +90,10 @@ def limits_of(mooring: Design) -> tuple[CountedLimit, ...]:
 
 
 def _on_estimate(rule: Rule, criterion: Criterion, leg: Leg) -> bool:
-    """Return whether a criterion uses a value of its part that is only an estimate."""
+    """Return whether the limit of a criterion is set by a value that is only an estimate."""
     figures, place = TEXTS[rule.name].figures, criterion.part.place
+    if criterion.figure:
+        figures = tuple(name for name in figures if name == criterion.figure)
     own = (part.component.estimates for part in parts_of(leg.file.pieces) if part.place == place)
     return any(name in figures for estimates in own for name in estimates)
 

@@ -133,3 +133,19 @@ def test_what_has_no_axis_has_its_one_drag(load):
     assert axial_drag_of(ball) == pytest.approx(0.5 * 1025.0 * 0.5 * pi / 4.0)
     assert line.clamp_drag.tolist() == [axial_drag_of(each) for each in (box, ball, logger)]
     assert mooring.line.clamp_drag[2] > 3.0 * line.clamp_drag[2]
+
+
+def test_a_line_that_is_hauled_in_pulls_at_no_clamp_in_an_ascent():
+    text = """
+environment: {depth: 60 m, current: {speed: 0.5 m/s, toward: 90 deg}}
+line:
+  - {use: sphere-ore-41in}
+  - {use: chain-buoy-13, length: 70 m, clamps: [{use: sbe37, at: 10 m, label: logger}]}
+  - {use: anchor-wheels-2}
+"""
+    found = [
+        one
+        for one in check(calm.load("hauled.yaml", text=text)).all_findings()
+        if one.rule == "clamp-grip" and one.component == "logger"
+    ]
+    assert found and not any("ascent" in one.message for one in found)

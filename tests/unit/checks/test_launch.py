@@ -106,3 +106,18 @@ def test_a_fall_that_nothing_limits_has_no_speed(launched):
     text = FILE.replace("kt: 400 N/(m/s)^2", "kt: 0 N/(m/s)^2").replace("kn: 200", "kn: 0")
     with pytest.raises(NoEquilibrium, match="speed of the line is unlimited"):
         launched(text.replace("kn: 50", "kn: 0"))
+
+
+ROPE = """
+  rope: {kind: cable, diameter: 10 mm, mass: 0.06 kg/m, density: 1140 kg/m^3, material: nylon,
+         breaking_load: 20 kN, elongation: [[0.1, 2 %], [0.3, 6 %]] MORE}
+"""
+
+
+def test_rope_with_permanent_elongation_falls_like_longer_rope(launched):
+    """Its weight and its drag per metre are those of the cut length; both differ by 4 %."""
+    text = FILE.replace("{use: thin, length: 200 m, ct: CT}", "{use: rope, length: 200 m}") + ROPE
+    grown = launched(text.replace("MORE", ", permanent_elongation: 4 %"))
+    longer = launched(text.replace("MORE", "").replace("length: 200 m", "length: 208 m"))
+    assert grown.fall_speed == pytest.approx(longer.fall_speed, rel=2e-3)
+    assert grown.anchor_tension == pytest.approx(longer.anchor_tension, rel=2e-3)

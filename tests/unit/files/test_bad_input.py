@@ -60,6 +60,14 @@ ONE_MISTAKE = {
         changed("0.35", ".nan"),
         (8, 15, "`speed: .nan` is not a finite number"),
     ),
+    "not a number, as text": (
+        changed("0.35", "nan"),
+        (8, 15, "`speed: nan` is not a finite number"),
+    ),
+    "a depth that is not a number": (
+        changed("[200, 0.35", "[nan, 0.35"),
+        (8, 10, "`depth: nan` is not a finite number"),
+    ),
     "infinity": (
         changed("1100 m", ".inf m"),
         (3, 10, "`depth: .inf m` is not a finite number"),

@@ -8,7 +8,7 @@ import pytest
 
 from calm.errors import InputError
 from calm.files import CurrentTable, MooringFile
-from calm.records.current_file import read_current_file
+from calm.records.current_file import CsvRecord, read_current_file
 from calm.records.current_terms import Terms, TimeChoiceError, parse_time
 from calm.records.delimited import MOST_PROBLEMS
 
@@ -91,6 +91,9 @@ def test_record_of_one_time_needs_no_choice(csv: Path) -> None:
             "2026-03-02T00:00 is outside the record, 2026-03-01T06:00 to 2026-03-01T12:00",
         ),
         ("noon", "`noon` is not a time; write 2026-03-01T06:00"),
+        # nanoseconds cannot count these: they would become another year
+        ("9999-12-31T00:00", "`9999-12-31T00:00` is not in the years 1678 to 2261"),
+        ("0001-01-01T00:00+05:00", "`0001-01-01T00:00+05:00` is not in the years 1678 to 2261"),
         ("2026-03-01T06.30", "`2026-03-01T06.30` is not a time; write 2026-03-01T06:00"),
         ("2026-03-01T06:30.5", "`2026-03-01T06:30.5` is not a time; write 2026-03-01T06:00"),
         ("20260301T06,5+02:00", "`20260301T06,5+02:00` is not a time; write 2026-03-01T06:00"),
@@ -100,6 +103,12 @@ def test_times_that_cannot_be_chosen(csv: Path, time: str | None, message: str) 
     with pytest.raises(TimeChoiceError) as caught:
         profile(csv, RECORD, time)
     assert str(caught.value) == message
+
+
+def test_times_of_a_record_that_nanoseconds_cannot_count(csv: Path) -> None:
+    csv.write_text("time,depth[m],u[m/s],v[m/s]\n2026-03-01T00:00,0,1,1\n9999-12-31,0,1,1\n")
+    with pytest.raises(InputError, match=r"csv:3:1: `9999-12-31` is not in the years"):
+        CsvRecord(csv, Terms(60.0), None, 1)
 
 
 @pytest.mark.parametrize(

@@ -131,6 +131,13 @@ def test_times_that_cannot_be_chosen(tmp_path: Path, time: str | None, message: 
         read(profile(), tmp_path, "2026-03-01")
 
 
+def test_a_time_that_occurs_twice_is_not_chosen(tmp_path: Path) -> None:
+    twice = record().isel(time=[0, 1, 1])
+    assert read(twice, tmp_path, "2026-03-01T00:00")[0].u == tuple(U)
+    with pytest.raises(TimeChoiceError, match="two profiles of 2026-03-01T06:00; remove one"):
+        read(twice, tmp_path, "2026-03-01T05:00")
+
+
 def test_levels_without_a_value_are_left_out(tmp_path: Path) -> None:
     dataset = profile()
     dataset["uo"][1] = np.nan

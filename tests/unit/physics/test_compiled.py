@@ -13,9 +13,11 @@ import pytest
 
 from calm.batch.net_profiles import solve_net_rows
 from calm.batch.solving import solve_rows
+from calm.errors import UsageError
 from calm.physics import compiled
 from calm.physics.drag import drag_share
 from calm.physics.passing import pass_line
+from calm.solve import Settings, two_speeds
 from calm.solve.leg_closing import do_task
 from calm.solve.mooring import run_search
 
@@ -33,6 +35,39 @@ def test_a_folder_that_cannot_be_written_is_done_without(
     share = compiled.outcome(drag_share, True, *arguments)
     compiled.cache_folder.cache_clear()
     assert share == drag_share(*arguments)
+
+
+@pytest.fixture
+def broken(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """An LLVM that is installed but does not support this machine."""
+    import llvmlite.binding
+
+    def refuse(*_: Any, **__: Any) -> Any:
+        raise RuntimeError("No available targets are compatible")
+
+    kept = compiled.fault, compiled._machine, compiled._machine_name
+    monkeypatch.setattr(llvmlite.binding.Target, "from_default_triple", refuse)
+    for each in kept:
+        each.cache_clear()
+    yield
+    for each in kept:
+        each.cache_clear()
+
+
+def test_an_llvm_that_does_not_work_leaves_the_interpreted_solver(
+    broken: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    paces = {each: two_speeds._Pace(each) for each in two_speeds.CompiledPart}
+    monkeypatch.setattr(two_speeds, "_paces", paces)
+    for wish in ("always", ""):
+        monkeypatch.setenv("CALM_COMPILED", wish)
+        assert not two_speeds.may_compile()
+        two_speeds.expect_many(1e9)
+        assert not two_speeds.runs_compiled(Settings())
+    assert not any(compiled.is_cached(each.value) for each in two_speeds.CompiledPart)
+    monkeypatch.setattr(compiled, "_entries", {})
+    with pytest.raises(UsageError, match=r"does not work here \(RuntimeError: No available"):
+        compiled.outcome(drag_share, True, 0.3, -0.1, 0.9, 0.7, 0.5, -0.2, 0.1)
 
 
 def test_compiled_code_is_kept_where_the_user_says(

@@ -75,11 +75,16 @@ def build_result(**changes):
                    x=55.0, y=0.0, tension=6750.0, tilt=16.0, knockdown=NAN),
         ]
     )  # fmt: skip
-    plain = Record(kind="body", role="instrument", material=None, max_tilt=None, warn_tilt=None)
-    meter = Record(kind="body", material=None, max_tilt=27.0, warn_tilt=None)
-    adcp = Record(kind="body", role="instrument", material=None, max_tilt=20.0, warn_tilt=15.0)
-    rope = Record(kind="cable", material="polyester", max_tilt=None, warn_tilt=None)
-    wire = Record(kind="cable", material="steel", max_tilt=None, warn_tilt=None)
+    loads = {"working_load": 10e3, "breaking_load": 30e3}
+    plain = Record(
+        kind="body", role="instrument", material=None, max_tilt=None, warn_tilt=None, **loads
+    )
+    meter = Record(kind="body", material=None, max_tilt=27.0, warn_tilt=None, **loads)
+    adcp = Record(
+        kind="body", role="instrument", material=None, max_tilt=20.0, warn_tilt=15.0, **loads
+    )
+    rope = Record(kind="cable", material="polyester", max_tilt=None, warn_tilt=None, **loads)
+    wire = Record(kind="cable", material="steel", max_tilt=None, warn_tilt=None, **loads)
     kinds = {2: wire, 3: meter, 6: rope}
     pieces = tuple(
         Record(component=kinds.get(index, plain), clamps=()) for index in range(len(components))

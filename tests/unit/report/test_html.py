@@ -288,6 +288,35 @@ def test_the_hash_goes_with_every_input(tmp_path):
     assert first != hashlib.sha256(text.encode()).hexdigest()  # the catalogue counts, too
 
 
+def test_the_hash_goes_with_the_content_of_files_and_not_with_their_place(tmp_path):
+    text = (LINES / "tidal-adcp.yaml").read_text(encoding="utf-8")
+    text = re.sub(
+        r"(?ms)^  current:.*?(?=^\S|^  \w)",
+        '  current: {file: record.csv, time: "2026-03-01T01:00"}\n'
+        "  waves: {significant_height: 1 m, peak_period: 5 s, scatter: seas.csv}\n",
+        text,
+        count=1,
+    )
+
+    def hashed(folder, speed, height):
+        (tmp_path / folder).mkdir(exist_ok=True)
+        (tmp_path / folder / "record.csv").write_text(
+            "time,depth[m],u[m/s],v[m/s]\n2026-03-01T00:00,10,0.1,0\n"
+            f"2026-03-01T01:00,10,{speed},0\n"
+        )
+        (tmp_path / folder / "seas.csv").write_text(
+            f"significant_wave_height[m],peak_period[s],share\n{height},5,0.5\n2,7,0.5\n"
+        )
+        path = tmp_path / folder / "mooring.yaml"
+        path.write_text(text, encoding="utf-8")
+        return input_hash([calm.load(path).file])
+
+    first = hashed("a", 0.5, 1.0)
+    assert hashed("b", 0.5, 1.0) == first
+    assert hashed("b", 0.6, 1.0) != first
+    assert hashed("b", 0.5, 1.2) != first
+
+
 def test_a_pass_does_not_hide_what_is_unknown(assessment, section):
     unknown = [each for each in assessment.findings if each.rule == "missing"]
     assert unknown

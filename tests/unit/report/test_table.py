@@ -85,6 +85,7 @@ def test_tilt_marks(result):
         (1, "subsurface", 2.9, 0.9, State.FAIL),  # either load may be too much
         (1, "subsurface", 3.1, 0.9, None),
         (1, "subsurface", 9.0, 1.1, State.FAIL),
+        (6, "subsurface", 5.1, 1.1, None),  # of a rope only the breaking load counts
         (1, "subsurface", None, None, None),
     ],
 )
