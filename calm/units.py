@@ -62,7 +62,7 @@ DIMENSIONS: Mapping[str, Dimension] = {
     "drag": Dimension("a drag at unit speed", "N/(m/s)^2",
         {"N/(m/s)^2": 1.0, "kgf/(m/s)^2": KILOGRAM_FORCE, "lbf/(ft/s)^2": _POUND_FORCE / _FOOT**2}),
     "temperature": Dimension("a temperature", "degC", {"degC": 1.0}),
-    "salinity": Dimension("a salinity (practical: 35; or in g/kg)", "",
+    "salinity": Dimension("a salinity (practical, such as 35, or in g/kg)", "",
         {"": 1.0, "PSU": 1.0, "psu": 1.0, "g/kg": 35 / 35.16504}),
     "pressure": Dimension("a pressure", "Pa",
         {"Pa": 1.0, "hPa": 1e2, "kPa": 1e3, "MPa": 1e6, "dbar": 1e4, "mbar": 1e2, "bar": 1e5}),

@@ -393,8 +393,9 @@ class Batch:
 
 
 def unsolved(line: Line, count: int, columns: int = 0) -> Results:
-    """Create results filled with NaN for `count` profiles, with slopes for `columns` current
-    components.
+    """Create results filled with NaN for `count` profiles.
+
+    They include derivatives with respect to `columns` components of the current.
     """
     pieces, clamps = len(line.length), len(line.clamp_piece)
     shapes = [

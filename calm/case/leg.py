@@ -43,7 +43,7 @@ class Leg:
     file : file with this leg only; its pieces are counted from the upper end. If a leg that is not
         a tow has no anchor, its last piece is a stand-in with the id `STAND_IN`
     for_surface : whether the leg is designed to reach the surface; None to determine this from the
-        leg itself. In a check, changed copies of a leg have the value of the original leg
+        leg itself. A check modifies copies of a leg; each copy keeps the value of its original leg
     memory : cache of solutions for earlier states of the file and for other environments
     given_line, given_water : replacements for the line and the water of the file
     """

@@ -44,9 +44,9 @@ def check(
     """Check designs: solve each mooring in each environment and apply the design
     rules.
 
-    Each mooring is solved as given, in still water, and with strumming cables. If
-    the file has a tidal range, the mooring is also solved at high and low water; if
-    the file has biofouling, the mooring is also solved with biofouling. CALM also
+    Each mooring is solved three times: as given, in still water, and with strumming
+    cables. If the file has a tidal range, the mooring is also solved at high and
+    low water; if the file has biofouling, it is also solved with biofouling. CALM also
     simulates an anchor-last deployment, the release, and a break at each
     connection. The exit code is 1 if a check fails or if a value that it needs is
     missing, 3 if a mooring has no equilibrium, and 0 otherwise.

@@ -123,10 +123,10 @@ class WordIndex:
     def suggested(self, text: str, near: str | None) -> list[str]:
         """Return up to three suggested ids for a text that is not an id.
 
-        `near` is the id with the most similar spelling. This id is the only suggestion if the text
-        contains a digit, because digits usually give a size, or if no component contains every word
-        of the text. Otherwise, the suggestions are the components that contain every word. The
-        components used most often in the shipped lines come first.
+        `near` is the id with the most similar spelling. It is the only suggestion if the text
+        contains a digit (digits usually give a size), or if no component contains every word of the
+        text. Otherwise, the suggestions are the components that contain every word. The components
+        used most often in the shipped lines come first.
         """
         if near and any(map(str.isdigit, text)):
             return [near]

@@ -28,7 +28,7 @@ class Equipment(definition.Model):
     """
 
     serial: Text | Annotated[tuple[Text, ...], Field(min_length=1)] | None = optional(
-        "serial number, or a list with one for each of `count` items or each release of a pair",
+        "serial number; for several items (`count`) or a pair of releases, a list of numbers",
         12345,
     )
     calibrated: Day | None = optional("day of its last calibration, e.g. 2026-03-01", "2026-03-01")

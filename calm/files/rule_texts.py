@@ -76,7 +76,7 @@ RULES = {
     "missing": RuleText("Missing values", "",
         "values that rules need but a component lacks; for each component id and value, one "
         "finding lists the rules and the pieces concerned",
-        "The state is unknown",
+        "The result is unknown",
         "The finding lists the rules that need the value",
         _ONCE),
     "strength": RuleText("Strength", "load",
@@ -141,13 +141,13 @@ RULES = {
         "of the planned depth. The difference is a failure if it also exceeds "
         "`planned_depth_limit` (10 %) of the planned depth. Parts without a planned depth are not "
         "checked",
-        "CALM's own limit: a large difference puts the instrument at a wrong depth, or is due to "
-        "a wrong length or water depth",
+        "This limit is CALM's own. After a large difference, either the instrument is at a wrong "
+        "depth, or a length or the water depth in the file is wrong",
         _ONCE),
     "stretch": RuleText("Stretch", "length",
         "stretch of synthetic ropes without `stiffness` or `elongation`, and the load under which "
         "a rope with `length_at` is measured",
-        "The state is unknown if the rope may, according to published stiffnesses, stretch by "
+        "The result is unknown if the rope may, according to published stiffnesses, stretch by "
         "more than 2 % of the water depth. There is a warning if the rope is measured under more "
         "than its working load or, if this is unknown, under more than a fifth of its breaking "
         "load",
@@ -158,8 +158,8 @@ RULES = {
         "minimum depth of every synthetic rope, in more than 200 m of water and less than 60° "
         "from the equator",
         "There is a warning if the rope reaches above `fishbite_depth` (1000 m)",
-        "Berteaux, Prindle & May, OCEANS '87: far from the shores, fish attack ropes from the "
-        "surface to 1000 m and deeper; CALM itself sets the limits of water depth and latitude",
+        "Berteaux, Prindle & May, OCEANS '87: far offshore, fish attack ropes from the "
+        "surface to 1000 m and deeper. The limits on water depth and latitude are CALM's own",
         "ropes are bitten over months, not during one profile", has_ratio=False),
     "knockdown": RuleText("Knockdown", "knockdown",
         "knockdown of the top",
@@ -246,14 +246,14 @@ RULES = {
         "mass, density, stiffness, strength, depth rating, drag coefficients",
         "Such a value is a failure. There is only a warning if `warn_tilt` exceeds `max_tilt`, if "
         "an instrument, release or connector floats, or if the `wind_area` is unusual for the "
-        "displacement of the float. The state is unknown if "
+        "displacement of the float. The result is unknown if "
         "the line replaces a value by a more favourable value without a `source`, or if a "
         "`material` is unknown or contradicts the `name`",
         "The limits are those of `calm catalog check`",
         _ONCE),
     "release-present": RuleText("Release", "",
         "whether a piece of a subsurface line has `role: release`, and whether it frees the line",
-        "The state is unknown if there is no such piece, if the release is clamped, or if its "
+        "The result is unknown if there is no such piece, if the release is clamped, or if its "
         "name is that of a shackle, swivel, rope or the like. There is a failure if no buoyancy is "
         "above the release. There is a warning if a single release is used in more than 100 m of "
         "water (a name or label with a word such as dual, twin or pair counts as two releases), if "

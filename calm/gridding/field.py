@@ -293,11 +293,11 @@ def _likeliest(field: GriddedQuantity, times: NDArray[np.int64]) -> Scales:
 
 
 def left_out(field: GriddedQuantity, times: NDArray[np.int64]) -> tuple[Floats, Floats]:
-    """Predict the value of each sensor from the other sensors, at times with the indices (n,).
+    """Predict each sensor's values at n times, given by their indices, from the other sensors.
 
-    The values of the sensor at the neighbouring times are also withheld. The prediction follows
-    from the sensor's block in the inverse covariance matrix (Rasmussen and Williams, eq. 5.12,
-    extended to blocks). Return measured minus predicted values (n, s) and their standard
+    The sensor's own values at this time and at the neighbouring times are withheld. The prediction
+    follows from the sensor's block in the inverse covariance matrix (Rasmussen and Williams,
+    eq. 5.12, extended to blocks). Return measured minus predicted values (n, s) and their standard
     deviations. Both are NaN if the sensor has no value, or if no other sensor has a value.
     """
     block = _block(field, times)

@@ -46,9 +46,9 @@ class Suspect:
 def line_suspects(task: Task, read: ReadCurrents, at: Linear, share: Floats) -> Iterator[Suspect]:
     """Yield possible faults of the line and its measured currents.
 
-    `at` is the line in the currents `read` at several times. The slopes of the line are with
-    respect to the logarithm of a factor on all speeds. `share` is the elapsed share of the record
-    at the times with an equilibrium.
+    `at` holds solutions of the line in the currents `read` at several times, with derivatives with
+    respect to the logarithm of a factor that multiplies all speeds. `share` is the elapsed share of
+    the record at the times with an equilibrium.
     """
     factors = task.common.factors
     good = np.isfinite(at.depth).all(axis=1)

@@ -424,6 +424,6 @@ def _no_date(times: xr.DataArray) -> UnreadableError:
     values = times.values.ravel()
     worst = values[np.nanargmax(np.abs(values - np.nanmedian(values)))]
     return UnreadableError(
-        f"`{times.name}` contains {worst:.10g}, in `{times.attrs['units']}`, which is "
-        f"not a date between {_FIRST} and {_LAST}"
+        f"`{times.name}` contains the value {worst:.10g} (units `{times.attrs['units']}`), which "
+        f"is not a date between {_FIRST} and {_LAST}"
     )

@@ -109,8 +109,8 @@ def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
         note=(
             "Capacity is the working load, or the breaking load divided by its safety factor if "
             "this is smaller; the launch columns use the factors for the launch. – not judged, ? "
-            "no published load, ≈ estimated, ○ accepted. The code of the load case follows the "
-            "tension. Equal pieces share a row: tension, capacity and use are those of the piece "
+            "no published load, ≈ estimated, ○ accepted. The code of the load case is printed "
+            "after the tension. Equal pieces share a row: tension, capacity and use are those of the piece "
             "with the highest use; minimum, tilt and rise are the extremes of all these pieces."
         ),
         aside="envelope of all load cases: largest tension and tilt, minimum tension",
@@ -191,7 +191,7 @@ def _hardware_table(loads: Sequence[PieceEnvelope]) -> Table:
         number(f"Capa-\ncity {unit}", lambda row: capacity_text(row[0].standing)),
         number("Use %", lambda row: _use(row[0].standing)),
         *(launch if launched else ()),
-        aside="one row per type, with the most used piece",
+        aside="one row per type, for the piece with the highest utilisation",
         ruled=False,
     )
 

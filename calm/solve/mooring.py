@@ -217,7 +217,7 @@ class Nearby:
     def node(self, piece: int, clamp: int = -1) -> int:
         """Return the number of the node at the top of a piece, or at a clamp.
 
-        The number is the same in all slightly different lines.
+        All lines solved with `shape` or `solved` have the same numbers.
         """
         if clamp >= 0:
             return int(np.argmax(self._trace.clamp == clamp))

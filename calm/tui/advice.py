@@ -54,7 +54,7 @@ def single(view: View) -> LegResult | None:
 
 
 def offers(view: View, catalogue: Catalogue, catalogs: Sequence[str | Path] = ()) -> list[Offer]:
-    """Suggest changes that remove failures and warnings of a line, the most severe of them first.
+    """Suggest changes that remove failures and warnings of a line, for the most severe one first.
 
     If the line has no anchor or needs a heavier anchor, the line is solved in every situation.
 

@@ -50,9 +50,9 @@ _MEANINGS = {
     Kind.INDEPENDENT: "From an integration that shares no code with CALM: a quadrature, a solver "
     "of the differential equations, another program.",
     Kind.PROPERTY: "Holds for any line and needs no reference.",
-    Kind.BY_CONSTRUCTION: "A point that CALM's curve is drawn through or fitted to, or a figure of "
-    "the library that CALM calls. Agreement guards only against copying errors and does not "
-    "count as verification.",
+    Kind.BY_CONSTRUCTION: "A point to which CALM's curve is fitted or through which it is "
+    "drawn, or a value from a library that CALM calls. Agreement guards only against copying errors and "
+    "does not count as verification.",
 }
 
 

@@ -155,7 +155,7 @@ def _sign(of: Piece | Clamp, levels: Levels) -> Sign:
 
 
 def afloat(sign: Sign) -> Sign:
-    """Return the symbol of a float at the surface: a sphere for a sphere, otherwise a buoy."""
+    """Return the symbol for a float at the surface: the sphere if it is a sphere, else the buoy."""
     return sign if sign.symbol is Symbol.SPHERE else replace(sign, symbol=Symbol.BUOY)
 
 

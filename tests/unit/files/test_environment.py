@@ -167,7 +167,7 @@ WIND = "wind: {speed: 9 m/s, toward: 0, "
                 4,
                 45,
                 "`salinity: 35 kg/m^3` is a density; "
-                "a salinity (practical: 35; or in g/kg) is needed",
+                "a salinity (practical, such as 35, or in g/kg) is needed",
             ),
         ),
         (
