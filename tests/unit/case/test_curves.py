@@ -60,7 +60,7 @@ def test_the_check_says_once_what_a_smooth_float_makes_of_the_knockdown(solve):
         found.message
     )
     then, now = (f"{each.top.knockdown:.1f} m" for each in (curve, constant))
-    assert f"the knockdown is {then} instead of {now}" in found.message
+    assert f"the knockdown would be {then} instead of {now}" in found.message
     assert _of_drag(curve) == []
 
 
