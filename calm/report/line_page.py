@@ -110,8 +110,9 @@ def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
             "Capacity is the working load, or the breaking load divided by its safety factor if "
             "this is smaller; the launch columns use the factors for the launch. – not judged, ? "
             "no published load, ≈ estimated, ○ accepted. The code of the load case is printed "
-            "after the tension. Equal pieces share a row: tension, capacity and use are those of the piece "
-            "with the highest use; minimum, tilt and rise are the extremes of all these pieces."
+            "after the tension. Equal pieces share a row: tension, capacity and use are those of "
+            "the piece with the highest use; minimum, tilt and rise are the extremes of all these "
+            "pieces."
         ),
         aside="envelope of all load cases: largest tension and tilt, minimum tension",
         ruled=False,
