@@ -133,7 +133,7 @@ RULES = {
         "minimum depth of the top of a subsurface line, also at low water",
         "A depth of less than `minimum_top_depth` is a failure. If `minimum_top_depth` is not "
         "given, there is a warning at less than 10 m",
-        "CALM's own limit: it keeps the top clear of waves, hulls and nets"),
+        "CALM's own limit, to stay clear of waves, hulls and nets"),
     "planned-depth": RuleText("Planned depth", "depth",
         "difference between the planned depth and the depth in still water, for every piece and "
         "clamp with a `planned_depth` or a depth in its label",
@@ -141,8 +141,7 @@ RULES = {
         "of the planned depth. The difference is a failure if it also exceeds "
         "`planned_depth_limit` (10 %) of the planned depth. Parts without a planned depth are not "
         "checked",
-        "This limit is CALM's own. After a large difference, either the instrument is at a wrong "
-        "depth, or a length or the water depth in the file is wrong",
+        "CALM's own limit. A large difference suggests an error in a length or in the water depth",
         _ONCE),
     "stretch": RuleText("Stretch", "length",
         "stretch of synthetic ropes without `stiffness` or `elongation`, and the load under which "

@@ -90,11 +90,6 @@ def check_document(assessments: Sequence[Assessment], *, every: bool = False) ->
         return [one for each in assessments for one in value_of(each)]
 
     in_environments = [stand for each in assessments for stand in each.in_environments]
-    seen = (
-        provenance.BY_WAVES
-        if all(one.leg.file.environment.waves for one in in_environments)
-        else ()
-    )
     given = by_name(lambda each: each.file.document)
     documents = {name: one.to_dict() for name, one in given.items() if one is not None}
     return {
@@ -108,7 +103,7 @@ def check_document(assessments: Sequence[Assessment], *, every: bool = False) ->
             lambda each: ({"mooring": each.name} | limit_document(key) for key in each.limits)
         ),
         "key_figures": by_name(key_figures),
-        "not_judged": [one for one in provenance.UNJUDGED if one not in seen],
+        "not_judged": provenance.unjudged(one.leg.file.environment for one in in_environments),
         "findings": listed(lambda each: _findings(each, every)),
         "findings_in_all": len(listed(Assessment.every_finding)),
         "situations": by_name(

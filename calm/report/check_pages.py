@@ -347,10 +347,9 @@ def basis_page(signed: SignedMooring, page_size: str = "a4") -> Iterator[Block]:
     }
     every = (one.leg.file.environment.depth_range for one in assessment.in_environments)
     tides = [*dict.fromkeys(one for one in every if one is not None)]
-    waves = all(one.leg.file.environment.waves for one in assessment.in_environments)
-    unjudged = (one for one in provenance.UNJUDGED if not (waves and one in provenance.BY_WAVES))
+    environments = (one.leg.file.environment for one in assessment.in_environments)
     unseen = (
-        f"{plain('; '.join(unjudged))}.",
+        f"{plain('; '.join(provenance.unjudged(environments)))}.",
         "No utilisation in this report takes these effects into account.",
     )
     text = provenance.source_text(assessment.file)

@@ -37,6 +37,7 @@ from calm.report.open_items import (
     without_asides,
 )
 from calm.report.page_one import case_columns, governing_rows, shown_cases
+from calm.report.provenance import WAVES_IN_TIDE
 
 MOST_LINES = 40
 """Maximum number of terminal lines for a mooring without failures."""
@@ -59,7 +60,7 @@ def _of_one(assessment: Assessment) -> Iterator[blocks.Block]:
     cases, checks = [*_cases(assessment)], [*_checks(assessment)]
     likely = [*likelihood_tables([(assessment.name, [*assessment.all_findings()])])]
     items = [_in_short(one) for one in open_items(assessment, keys=True)]
-    beyond = beyond_text([*assessment.all_findings()])
+    beyond = beyond_text([assessment])
     room = MOST_LINES - _FRAME - sum(map(_height, (*cases, *checks, *likely)))
     fails = assessment.verdict is Conclusion.FAILS
     yield verdict
@@ -247,10 +248,14 @@ def _height(block: blocks.Block) -> int:
     return 1
 
 
-def beyond_text(findings: Sequence[Finding]) -> tuple[str, ...]:
+def beyond_text(assessments: Sequence[Assessment]) -> tuple[str, ...]:
     """Return a sentence on the effects that no check covers."""
-    waves = any(one.rule == "wave-slack" for one in findings)
-    beyond = ["waves", "snap loads", "fatigue", "wear", "soil", "trawls", "hauling"][int(waves) :]
+    waves = any(one.rule == "wave-slack" for each in assessments for one in each.all_findings())
+    waters = (one.leg.file.environment for each in assessments for one in each.in_environments)
+    tide = any(one.depth_range is not None for one in waters)
+    beyond = ["snap loads", "fatigue", "wear", "soil", "trawls", "hauling"]
+    if tide or not waves:
+        beyond.insert(0, WAVES_IN_TIDE if waves else "waves")
     return (f"Not covered: {', '.join(beyond)}.",)
 
 
@@ -294,7 +299,7 @@ def _of_many(assessments: Sequence[Assessment]) -> Iterator[blocks.Block]:
         if left and items:
             yield blocks.OpenItems(each.name, tuple(items[:left]))
             left -= min(left, len(items))
-    yield blocks.Note(beyond_text([one for each in assessments for one in each.all_findings()]))
+    yield blocks.Note(beyond_text(assessments))
 
 
 def _of_environment(name: str, code: str) -> blocks.Field:

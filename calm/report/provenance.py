@@ -19,6 +19,7 @@ from pydantic import BaseModel
 from calm.checks.finding import State
 from calm.errors import InputError, UsageError
 from calm.files import MooringFile, Position
+from calm.files.environment import Environment
 from calm.physics.line import Water
 from calm.quantities import bearing_of, say
 from calm.report import blocks
@@ -133,12 +134,25 @@ UNSEEN = (
 
 BY_WAVES = ("waves", "fatigue due to waves")
 """Effects that are excluded unless environments have `waves:`."""
+WAVES_IN_TIDE = "waves at high and low water"
+"""Effect that is excluded in tidal water, even with `waves:`."""
 
 UNJUDGED = (
     *BY_WAVES, "snap loads", "fatigue due to vortices", "creep, corrosion and wear",
     "transients of the launch", "hauling and lifting during recovery", *_ALSO_EXCLUDED,
 )  # fmt: skip
-"""Effects that no rule checks, for the JSON of a design check."""
+"""Effects that no rule checks."""
+
+
+def unjudged(environments: Iterable[Environment]) -> list[str]:
+    """Return the effects that the design check does not cover in the given environments."""
+    waters = [*environments]
+    if not all(one.waves for one in waters):
+        return [*UNJUDGED]
+    tide = any(one.depth_range is not None for one in waters)
+    seen = [one for one in UNJUDGED if one not in BY_WAVES]
+    return [WAVES_IN_TIDE, *seen] if tide else seen
+
 
 NOT_JUDGED = ReportPart("Not covered by this check", (Prose(UNSEEN, State.UNKNOWN),))
 """Report part with the excluded effects."""

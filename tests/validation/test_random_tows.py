@@ -65,8 +65,8 @@ def test_calm_agrees_with_the_referee(block) -> None:
     ("number", "status", "why"),
     [
         (997, "no-equilibrium", "has neither weight nor tangential drag"),
-        (2942, "no-equilibrium", "It would be partly out of the water"),
-        (4555, "no-equilibrium", "It would be partly out of the water"),
+        (2942, "no-equilibrium", "fully in water or fully in air"),
+        (4555, "no-equilibrium", "fully in water or fully in air"),
         (652, "no-equilibrium", "with piece 12 fully in water"),
         (2079, "no-equilibrium", "with piece 9 fully in water"),
     ],

@@ -37,7 +37,7 @@ def test_a_release_laid_down_by_the_current_is_named(tmp_path: Path) -> None:
     heavy = LAID_DOWN.replace("buoyancy: 1000 N", "buoyancy: 700 N")
     (tmp_path / "m.yaml").write_text(heavy)
     with pytest.raises(
-        NoEquilibrium, match="is 700 N, the weight of the other pieces in water is 780"
+        NoEquilibrium, match="is 700 N, but the weight of the other pieces in water is 780"
     ):
         calm.load(tmp_path / "m.yaml").solve()
 
