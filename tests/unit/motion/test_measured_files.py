@@ -106,7 +106,7 @@ def out_of_time():
     (lambda: instrument("DEPTH", "depth", "m", comment=INFERRED), "is not a measurement"),
     (lambda: instrument("DEPTH", "depth", "m", long_name="depth estimated by CALM"), "by calm"),
     (with_ids, "2 instruments one after the other (`sensor_id` gives the instrument"),
-    (out_of_time, "contains -712224.4"),
+    (out_of_time, "contains the value -712224.4"),
     (lambda: instrument(units=""), "unit"),
     (lambda: instrument(units="degC"), "unit"),
     (lambda: instrument("TEMP", "sea_water_temperature"), "has no pressures"),
