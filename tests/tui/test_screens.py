@@ -422,7 +422,7 @@ def test_a_tow_is_edited_the_same_way(drive, folder):
 def test_a_tow_is_built_from_nothing(drive, folder):
     async def story(driver):
         await driver.press("T")
-        assert "without an anchor" in " ".join(driver.screen.replace("│", " ").split())
+        assert "has no anchor" in " ".join(driver.screen.replace("│", " ").split())
         for text in ("4 knot", "90", "3"):
             await driver.type(text)
             await driver.press("enter")

@@ -577,7 +577,7 @@ FLAWS = (
         "release-present",
         "releases pair",
         "warn",
-        "releases pair is 0.1 m above the anchor; at least 1 m keeps a release clear of mud",
+        "releases pair is 0.1 m above the anchor; a release needs at least 1 m",
     ),
     Flaw(
         "a release above every float",
@@ -774,7 +774,7 @@ FLAWS = (
         "figures",
         None,
         "unknown",
-        "The line sets working_load of shackle-13 to 90.00 kN without a source; the definition of",
+        "The line sets working_load of shackle-13 to 90.00 kN without a source; the value in",
     ),
     Flaw(
         "a rope that no current pushes",
@@ -783,7 +783,7 @@ FLAWS = (
         "figures",
         None,
         "unknown",
-        "The line sets cn of polyester to 0.2 without a source; the definition of "
+        "The line sets cn of polyester to 0.2 without a source; the value in the definition of "
         "polyester-19-dewey",
     ),
     Flaw(
