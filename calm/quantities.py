@@ -99,10 +99,12 @@ class Quantity:
 
         The value is given in `unit`. For `beside`, see `say`.
         """
-        largest = max(abs(one) for one in (value, *beside) if one is not None)
-        if self.display_unit == "kN" and largest < 999.5 and "force" not in _shown:
-            return f"{value:z.{2 if largest < 9.95 else 0}f}", "N"
-        return self.format(value), self.display_unit
+        unit = self.display_unit
+        if unit == "kN" and "force" not in _shown:
+            largest = max(abs(one) for one in (value, *beside) if one is not None)
+            if largest < 999.5:
+                return f"{value:z.{2 if largest < 9.95 else 0}f}", "N"
+        return self.format(value), unit
 
     def figure(self, value: float) -> str:
         """Format a value, given in `unit`, to four significant digits with its display unit, for

@@ -53,18 +53,15 @@ class State(StrEnum):
     UNKNOWN = "unknown"
     FAIL = "fail"
 
-    @property
+    @cached_property
     def severity(self) -> int:
         """Rank of the state, 0 for pass and larger for more severe states."""
-        return _SEVERITIES[self]
+        return [*State].index(self)
 
     @property
     def sign(self) -> str:
         """Symbol that shows the state without colour."""
         return "✓–◦≈~?!"[self.severity]
-
-
-_SEVERITIES = {state: severity for severity, state in enumerate(State)}
 
 
 def worst_state(states: Iterable[State]) -> State:

@@ -18,7 +18,7 @@ from calm.physics.reynolds import Smooth, drag_variation
 from calm.physics.seawater import REFERENCE_DENSITY
 from calm.solve.block_tridiagonal import solve_blocks
 
-MOST_ROUNDS = 16
+MOST_ROUNDS = 12
 """Largest number of Newton iterations; a time step that needs more is too long."""
 LINEAR_DRAG_SPEED = 10.0
 """Speed below which drag is linear in speed, in the first iteration of a time step from

@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Literal
 
 StiffnessLaw = tuple[float, float]
@@ -118,6 +119,7 @@ _NAMED = re.compile(
 _INSULATED = re.compile(r"plastic|jacket|sheath|coated|insulat", re.IGNORECASE)
 
 
+@lru_cache(maxsize=1024)
 def materials_in(text: str | None) -> tuple[Material, ...]:
     """Find the materials mentioned in a text, in order of appearance."""
     found = _NAMED.finditer(text or "")
