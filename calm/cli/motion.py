@@ -60,8 +60,9 @@ def motion(
     Parameters
     ----------
     pressures
-        Pressures of sensors on the line, in one or more files: NetCDF or CSV with the labels of
-        the sensors, or one sensor per file as LABEL=FILE (also RODB or Sea-Bird .cnv).
+        Pressures of sensors on the line, in one or more files. A NetCDF or CSV file names its
+        sensors by their labels. For a file with a single sensor, write LABEL=FILE; it may also be
+        a RODB or Sea-Bird .cnv file.
     output
         Result file, .nc.
     currents

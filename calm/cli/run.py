@@ -56,7 +56,7 @@ def run(
     Parameters
     ----------
     files
-        Mooring files. A file with `tow:` describes a tow, a file with `legs:` a net.
+        Mooring files. A file with `tow:` describes a tow; a file with `legs:` describes a net.
     output
         Write the result to this file, in the format of its suffix. Repeatable. All moorings are
         written to a single .json or .csv file. The .csv file has a row per component or, with

@@ -57,7 +57,7 @@ def read_variables(path: Path, wanted: Collection[str]) -> MatVariables:
     try:
         return MatVariables(read_apart(_variables, content, list(wanted)))
     except ValueError as error:
-        raise refused(path, f"is not a MATLAB or Octave file, or a damaged one ({error})") from None
+        raise refused(path, f"is damaged, or is not a MATLAB or Octave file ({error})") from None
 
 
 def _variables(content: bytes, wanted: Collection[str]) -> dict[str, MatValue]:

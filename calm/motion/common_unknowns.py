@@ -178,10 +178,10 @@ def chance_of(code: int, times: int) -> tuple[float, float]:
 def step_times(law: LinearLaw, covariance: Floats, columns: Sequence[Floats]) -> list[int]:
     """Find the most likely start of each candidate change in the readings.
 
-    Each change lasts to the end of the record. One of `columns` (n, s) is the effect of a change of
-    1 m on the readings. Each change is fitted jointly with the common unknowns, which have the
-    prior covariance (q, q). Return the index of the time at which each change starts. The index is
-    0 if the change covers the whole record, or if there are too few readings to find its start.
+    Each change lasts to the end of the record. Each array (n, s) in `columns` is the effect of a
+    change of 1 m on the readings. Each change is fitted jointly with the common unknowns, which
+    have the prior covariance (q, q). Return the index of the time at which each change starts. The
+    index is 0 if the change covers the whole record, or if too few readings show its start.
     """
     inverse = np.linalg.inv(law.normal(law.fixed) + np.linalg.inv(covariance))
     left = law.raw - law.fixed @ (inverse @ law.pulls(law.fixed, law.raw).sum(axis=0))

@@ -51,6 +51,6 @@ class SpeedLaw:
     kept: Linear | None = None
 
     def read(self, level: Floats) -> ReadCurrents:
-        """Return currents of the mean speeds at the levels (n, k) [m], all in one direction."""
+        """Return currents in one direction, with the mean speeds at the levels (n, k) [m]."""
         u = np.tile(np.exp(self.mean), (len(level), 1))
         return ReadCurrents(level, u, np.zeros_like(u))

@@ -137,7 +137,7 @@ class Fault:
 
 
 def false_current_times(names: Sequence[str], time: Times, doubt: Floats) -> dict[str, Times]:
-    """Return the times of probably false currents by name of the level, from `doubt` (n, k)."""
+    """Return, for each level by name, the times of probably false currents (`doubt` (n, k))."""
     hit = doubt > FALSE
     return {name: time[hit[:, k]] for k, name in enumerate(names) if hit[:, k].any()}
 

@@ -120,7 +120,9 @@ def choose_time(times: NDArray[np.datetime64], wanted: str | None) -> tuple[int,
     if wanted is None:
         if len(times) == 1:
             return 0, None
-        raise TimeChoiceError(f"the file has {len(times)} times, {span}; give `time:`")
+        raise TimeChoiceError(
+            f"the file has {len(times)} time steps, {span}; choose one with `time:`"
+        )
     moment = parse_time(wanted)
     if not first.astype("datetime64[s]") <= moment <= last:
         raise TimeChoiceError(f"{time_text(moment)} is outside the record, {span}")

@@ -242,8 +242,8 @@ def _anchor_table(signed: SignedMooring) -> Iterator[Table]:
         number("Uplift use %", uplift),
         number("Sliding use %", sliding),
         note=f"Weight required: {factor:g} (V + H / {first.anchor_load.friction:.3g}). Uplift use "
-        f"compares V with weight / {factor:g}; sliding use compares H with "
-        f"{first.anchor_load.friction:.3g} (weight / {factor:g} − V). Soil strength is not "
+        f"is V / (weight / {factor:g}); sliding use is H / "
+        f"[{first.anchor_load.friction:.3g} (weight / {factor:g} − V)]. Soil strength is not "
         "checked.",
         ruled=False,
     )  # fmt: skip

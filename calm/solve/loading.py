@@ -10,9 +10,9 @@ from calm.solve.two_speeds import runs_compiled
 
 
 def load_line_solver() -> None:
-    """Load or compile the solver for moored lines, if it is to run compiled.
+    """Load the compiled solver for moored lines if it pays, and compile it first if necessary.
 
-    Processes forked afterwards share its code. A small line is solved, which loads the code for all
+    Processes forked afterwards share the code. A small line is solved, which loads the code for all
     lines, since every line is packed into arrays of the same types.
     """
     settings = Settings()

@@ -34,10 +34,10 @@ def fill_starts(problem: LineProblem) -> int:
     """Solve a line in uniform currents, and return the number of solutions found.
 
     The solutions are written to the seven rows of `LineProblem.starts`: three rows for a line clear
-    of the seabed, three for a line with a touchdown, and one for the results of `lean_of`. The
-    three rows are the root of the search, the slope of the closing error at the root, and the
-    knockdown [m]. A root of at least 0 is the depth of the free end [m]; a negative root is the
-    used fraction of buoyancy minus one.
+    of the seabed, three for a line with a touchdown, and one for the results of `lean_of`. Each
+    set of three rows holds the root of the search, the slope of the closing error at the root, and
+    the knockdown [m]. A root of at least 0 is the depth of the free end [m]. If the root is
+    negative, the root plus one is the used fraction of buoyancy.
     """
     found = 0
     limits, starts = problem.limits, problem.starts

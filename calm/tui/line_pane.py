@@ -98,7 +98,7 @@ class LinePane(LineSearch):
         self.table.cursor = 0 if direction < 0 else len(self.table.rows) - 1
 
     def action_mark(self, by: int) -> None:
-        """Toggle the mark of the row if `by` is 0; otherwise move `by` rows and mark both rows."""
+        """Toggle the mark of the row if `by` is 0; else move `by` rows, and mark both its ends."""
         table = self.table
         marked, spot = table.marked, table.chosen_here
         table.cursor += by

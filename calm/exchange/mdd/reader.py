@@ -28,8 +28,8 @@ _WANTED = frozenset(
 _STRETCHED = 1.2
 _APART = 0.02  # m and share of the piece by which the two places of a clamp may differ
 _NOTE = (
-    "cn and cx are Cd of Mooring Design & Dynamics, which neglects drag along lines and "
-    "cylinders, so ct is 0. "
+    "cn and cx are the Cd of Mooring Design & Dynamics. That program neglects drag along lines "
+    "and cylinders, so ct is 0. "
     "See `calm docs import-mdd`."
 )
 

@@ -85,7 +85,11 @@ def test_record_of_one_time_needs_no_choice(csv: Path) -> None:
 @pytest.mark.parametrize(
     ("time", "message"),
     [
-        (None, "the file has 2 times, 2026-03-01T06:00 to 2026-03-01T12:00; give `time:`"),
+        (
+            None,
+            "the file has 2 time steps, 2026-03-01T06:00 to 2026-03-01T12:00; choose one with "
+            "`time:`",
+        ),
         (
             "2026-03-02",
             "2026-03-02T00:00 is outside the record, 2026-03-01T06:00 to 2026-03-01T12:00",

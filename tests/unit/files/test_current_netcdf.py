@@ -119,7 +119,10 @@ def test_profile_of_a_time(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("time", "message"),
     [
-        (None, "the file has 2 times, 2026-03-01T00:00 to 2026-03-01T06:00; give `time:`"),
+        (
+            None,
+            "the file has 2 time steps, 2026-03-01T00:00 to 2026-03-01T06:00; choose one",
+        ),
         ("2026-03-01T06:01", "is outside the record"),
         ("six", "`six` is not a time"),
     ],
