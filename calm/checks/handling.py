@@ -11,7 +11,6 @@ from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Recovery
 from calm.checks.strength import (
     governing_load,
-    lesser_load,
     load_text,
     no_load_known,
     passes_load_on,
@@ -114,8 +113,7 @@ def launch_strength(handling: Handling) -> Iterator[Verdict]:
     times, over = file.checks.launch_working_factor, file.checks.launch_safety_factor
     most = "" if launch.anchor_drag_known else " at most"
     for piece, tension in zip(file.pieces, launch.greatest_tension.tolist(), strict=False):
-        limit = lesser_load(piece.component, times, over)
-        figure = governing_load(piece.component, times, over)
+        limit, figure = governing_load(piece.component, times, over)
         carried = load_text(piece, tension, " during the descent", most)
         if limit is None:
             if passes_load_on(file, piece.index):

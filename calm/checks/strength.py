@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import partial
+from operator import itemgetter
 
 import numpy as np
 
@@ -33,31 +34,24 @@ def allowable_load(component: Component, factors: SafetyFactors, surface: bool) 
     safety factor. The factor for surface moorings applies if `surface` is true; otherwise the
     factor for synthetic rope or for steel applies.
     """
-    return lesser_load(component, 1.0, safety_factor(component, factors, surface))
+    return governing_load(component, 1.0, safety_factor(component, factors, surface))[0]
 
 
-def lesser_load(component: Component, working_factor: float, factor: float) -> float | None:
-    """Return the smaller of working load × `working_factor` and breaking load / `factor` [N].
+def governing_load(
+    component: Component, working_factor: float, factor: float
+) -> tuple[float | None, str]:
+    """Return the smaller of working load × `working_factor` and breaking load / `factor` [N], and
+    the key of this load rating.
 
-    For a synthetic rope with both load ratings, only the breaking load counts. Return None if the
-    component has no load rating.
+    For a synthetic rope with both load ratings, only the breaking load counts. Return None and ""
+    if the component has no load rating.
     """
     known, working = [], counted_working_load(component)
     if working is not None:
-        known.append(working_factor * working)
+        known.append((working_factor * working, "working_load"))
     if component.breaking_load is not None:
-        known.append(component.breaking_load / factor)
-    return min(known, default=None)
-
-
-def governing_load(component: Component, working_factor: float, factor: float) -> str:
-    """Return the key of the load rating that sets `lesser_load`; "" without any load rating."""
-    working = counted_working_load(component)
-    lesser = lesser_load(component, working_factor, factor)
-    if lesser is None:
-        return ""
-    by_working = working is not None and lesser == working_factor * working
-    return "working_load" if by_working else "breaking_load"
+        known.append((component.breaking_load / factor, "breaking_load"))
+    return min(known, key=itemgetter(0), default=(None, ""))
 
 
 def wanted_load(component: Component) -> str:
@@ -116,25 +110,24 @@ def strength(leg: Leg) -> Iterator[Criterion]:
     factors, surface = leg.file.checks.safety_factor, reaches_the_surface(leg)
     for part in pieces_of(leg):
         component = part.component
-        limit = allowable_load(component, factors, surface)
-        if limit is None and not passes_load_on(leg.file, part.index):
-            continue
         name = safety_factor_name(component, surface)
         factor = getattr(factors, name)
-        figure = governing_load(component, 1.0, factor)
+        limit, figure = governing_load(component, 1.0, factor)
+        if limit is None and not passes_load_on(leg.file, part.index):
+            continue
         source = cited(leg.file, f"safety_factor.{name}") if figure == "breaking_load" else ""
-        words = partial(_strength_words, part, limit, factor)
+        words = partial(_strength_words, part, limit, figure, factor)
         lacks = wanted_load(component)
         yield Criterion(part, "tension", limit, words, source=source, lacks=lacks, figure=figure)
 
 
 def _strength_words(
-    part: JudgedPart, limit: float | None, factor: float, tension: float, _: LegResult
+    part: JudgedPart, limit: float | None, figure: str, factor: float, tension: float, _: LegResult
 ) -> tuple[str, str]:
     component, load = part.component, load_text(part, tension)
     if limit is None:
         return no_load_known(load)
-    if governing_load(component, 1.0, factor) == "working_load":
+    if figure == "working_load":
         allowed = f"its working load is {say('load', limit)}"
     else:
         allowed = (
@@ -181,14 +174,12 @@ def release_load(leg: Leg) -> Iterator[Criterion]:
     for part in pieces_of(leg):
         if part.component.role == "release":
             lacks = wanted_load(part.component)
-            stands = allowable_load(part.component, factors, surface)
             factor = safety_factor(part.component, factors, surface)
-            figure = governing_load(part.component, 1.0, factor)
-            words = partial(_release_words, part, False, stands)
-            yield Criterion(part, "tension", stands, words, lacks=lacks, figure=figure)
-            limit, opens = stands, part.component.opening_load
-            if opens is not None:
-                limit, figure = opens, "opening_load"
+            limit, figure = governing_load(part.component, 1.0, factor)
+            words = partial(_release_words, part, False, limit)
+            yield Criterion(part, "tension", limit, words, lacks=lacks, figure=figure)
+            if part.component.opening_load is not None:
+                limit, figure = part.component.opening_load, "opening_load"
             words = partial(_release_words, part, True, limit)
             yield Criterion(part, "tension_bottom", limit, words, lacks=lacks, figure=figure)
 

@@ -12,7 +12,6 @@ from calm.checks.finding import State, Verdict, at_least, at_most, rule, unknown
 from calm.checks.posture import reaches_the_surface
 from calm.checks.strength import (
     governing_load,
-    lesser_load,
     load_text,
     no_load_known,
     passes_load_on,
@@ -73,7 +72,7 @@ def wave_strength(evidence: MooringInWaves) -> Iterator[Verdict]:
         state = max(waves.states, key=lambda each: each.components[piece.index].greatest)
         row = state.components[piece.index]
         tension = row.greatest
-        limit = lesser_load(piece.component, 1.0, factor)
+        limit, figure = governing_load(piece.component, 1.0, factor)
         load = load_text(piece, tension, f" in waves of Hs {state.sea.significant_height:.1f} m")
         if limit is None:
             if passes_load_on(leg.file, piece.index):
@@ -84,7 +83,6 @@ def wave_strength(evidence: MooringInWaves) -> Iterator[Verdict]:
             continue
         message = f"{load}; the limit is {say('load', limit)}.{_measured(row, 'greatest')}"
         remedy = "Use a stronger component, or a more elastic line."
-        figure = governing_load(piece.component, 1.0, factor)
         verdict = at_most(piece, tension, limit, message, remedy, source=source, figure=figure)
         yield _sure(waves, verdict)
 

@@ -115,7 +115,7 @@ def judge(
 def load_ahead(environments: int, drawn: bool) -> None:
     """Import the modules that the checks need, before processes are forked.
 
-    If there are enough `environments` to solve, the compiled solver is loaded from the cache, too.
+    If there are enough `environments` to solve, the compiled solver is loaded, too.
     """
     import calm.checks.assess
     import calm.checks.recovery

@@ -77,6 +77,7 @@ class ChainState:
     velocity : (n+1, 3) mean velocities of the nodes in the last time step [m/s]
     acceleration, tightening : (n+1, 3), (n,) rates of change of velocity and tension in the last
         time step [m/s², N/s]; 0 if they are not known
+    lasted : length of the last time step [s]; 0 if there was none
     """
 
     time: float

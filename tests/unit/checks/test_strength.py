@@ -6,7 +6,7 @@ import pytest
 
 import calm
 from calm.checks.finding import State
-from calm.checks.strength import allowable_load, lesser_load, passes_load_on, strength_steps
+from calm.checks.strength import allowable_load, governing_load, passes_load_on, strength_steps
 from calm.errors import InputError
 from calm.files import Cable, SafetyFactors
 
@@ -83,7 +83,7 @@ def test_the_lesser_of_working_load_and_breaking_load_over_the_factor(
     loads: dict[str, str], working_factor: float, factor: float, limit: float | None
 ) -> None:
     rope = Cable.model_validate({"kind": "cable", "diameter": "20 mm", "weight": "1 N/m"} | loads)
-    assert lesser_load(rope, working_factor, factor) == limit
+    assert governing_load(rope, working_factor, factor)[0] == limit
 
 
 @pytest.mark.parametrize(
@@ -113,7 +113,7 @@ def test_a_synthetic_rope_is_judged_by_its_breaking_load() -> None:
     both = Cable.model_validate(keys | {"working_load": "2390 N", "breaking_load": "28.6 kN"})
     factors = SafetyFactors()
     assert allowable_load(both, factors, surface=False) == pytest.approx(28_600.0 / 5.0)
-    assert lesser_load(both, 1.0, 2.0) == pytest.approx(14_300.0)
+    assert governing_load(both, 1.0, 2.0)[0] == pytest.approx(14_300.0)
     alone = Cable.model_validate(keys | {"working_load": "2390 N"})
     assert allowable_load(alone, factors, surface=False) == pytest.approx(2390.0)
     steel = Cable.model_validate(
