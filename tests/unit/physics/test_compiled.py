@@ -17,7 +17,7 @@ from calm.errors import UsageError
 from calm.physics import compiled
 from calm.physics.drag import drag_share
 from calm.physics.passing import pass_line
-from calm.solve import Settings, two_speeds
+from calm.solve import Settings, load_line_solver, two_speeds
 from calm.solve.leg_closing import do_task
 from calm.solve.mooring import run_search
 
@@ -212,3 +212,13 @@ def test_laws_call_laws_and_functions_of_numbers_alone(law: Callable[..., Any]) 
             assert named.__module__ == "math", named
         assert not isinstance(named, FunctionType), named
         assert not getattr(named, "__name__", "").startswith("numpy"), named
+
+
+def test_the_line_solver_is_loaded_before_a_fork(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(compiled, "_entries", {})
+    monkeypatch.setenv("CALM_COMPILED", "never")
+    load_line_solver()
+    assert not compiled._entries
+    monkeypatch.setenv("CALM_COMPILED", "always")
+    load_line_solver()
+    assert {run_search, pass_line} <= compiled._entries.keys()
