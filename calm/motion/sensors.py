@@ -19,6 +19,7 @@ from calm.errors import InputError, Problem, UsageError
 from calm.motion.common_unknowns import FEWEST
 from calm.motion.remarks import rms
 from calm.physics.line import Floats
+from calm.physics.seawater import pressure_at
 from calm.records import cf_files, instrument_series, instrument_text
 from calm.records.attributes import words_of
 from calm.records.card import ReadCard, VariableSummary
@@ -317,13 +318,11 @@ def metre_notes(measured: Floats, expected: Floats, latitude: float) -> list[str
     depths without a common offset, because a common offset and a wrong length of the line together
     would have the same effect as another unit.
     """
-    import gsw
-
     off = measured - expected
     if len(off) < 2 or not rms(off) > LEAST:
         return []
     for true, way, cause in (
-        (np.asarray(gsw.p_from_z(-measured, latitude)), "low", "depths in metres recorded as dbar"),
+        (pressure_at(measured, latitude), "low", "depths in metres recorded as dbar"),
         (depth_of(measured, latitude), "high", "pressures in dbar recorded as depths in metres"),
     ):
         left = rms(true - expected)

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from calm.errors import InputError, Problem, UsageError
 from calm.physics.line import Floats
+from calm.physics.seawater import pressure_at
 from calm.quantities import QUANTITIES_MEASURED, MeasuredQuantity
 from calm.records import attributes, cf_files, instrument_text, velocity
 from calm.records.card import (
@@ -445,7 +446,7 @@ def practical_salinity(
     }
     pressure = parts.get("pressure", np.full_like(parts["temperature"], np.nan))
     known = np.isfinite(pressure)
-    pressure = np.where(known, pressure, gsw.p_from_z(-np.asarray(depth), _LATITUDE))
+    pressure = np.where(known, pressure, pressure_at(depth, _LATITUDE))
     with np.errstate(invalid="ignore"):
         salinity: Floats = gsw.SP_from_C(parts["conductivity"], parts["temperature"], pressure)
     return salinity
