@@ -135,9 +135,8 @@ def instruments_of(mooring: Design) -> list[int]:
 
 
 SPAN = 0.25  # correlation length of the error in knockdown, as a share of the line
-# Local error of a point, from bends at floats and clamps, as a share of its knockdown. Without
-# this error, the depths of dune2 are 8 % better, but those of synthetic moorings with ten-minute
-# meters are 3 % worse, and those of RAPID without currents up to 26 % worse
+# Local error of a point, from bends at floats and clamps, as a share of its knockdown. Without this
+# error, the depths of RAPID are up to 26 % worse
 LOCAL = 0.3
 
 

@@ -61,8 +61,13 @@ WIDER = 2.0
 METERS_ALIKE = 0.02  # error common to all meters of a record, as a share of the speed
 
 STRETCHES = 10  # number of stretches with separate errors in knockdown
+SPAN = 0.4  # correlation length of these errors, as a share of the line
 SHARE, SHARES = 0.07, (0.01, 0.4)  # prior and limits of the error share of a stretch
-LINE_HOURS = 6.0  # correlation time of the error of a stretch [h]
+# prior deviations of the logarithm of the error share: common to all stretches, and of each
+ALL_SHARES, EACH_SHARE = 1.0, 0.7
+SHARE_REACH = 0.5  # correlation length of the latter, as a share of the line
+SHARE_STEP = 0.4  # maximum change in the logarithm of an error share in one step
+LINE_HOURS = 3.0  # correlation time of the error of a stretch [h]
 TIDE_HOURS = 2.4  # time in which the correlation of a semidiurnal tide falls to 1/e [h]
 # typical hourly step of datum and offsets [m]; steps and initial values have Student's t
 # distribution with one degree of freedom, which allows rare steps that are many times as large
@@ -73,7 +78,6 @@ STEP = 0.02
 TAILS = {"datum": 1.0 / 2.0, "place": 1.0 / 5.0}
 ZEROS = 2.0  # ratio of the variance of Student's law, with four degrees of freedom, to a normal law
 SETTLED = 6  # iterations before the line error is estimated; it would otherwise absorb sensor steps
-LONGER = 30.0  # maximum factor by which a step of the line error is lengthened
 FURTHEST = 0.7  # maximum logarithm of a factor
 
 
@@ -162,10 +166,32 @@ class ErrorScales:
     """Sizes and correlation time of the errors, estimated from the record."""
 
     flag: Mapping[int, float]  # factor on the error of a current meter, by quality flag
-    # error of each stretch of the line, as a share of the knockdown of the stretch
-    share: float = SHARE
+    share: Floats  # (z,) error of each stretch of the line, as a share of its own knockdown
     tide: float = common_unknowns.TIDE  # standard deviation of the tide [m]
     hours: float = CURRENT_HOURS  # correlation time of the current [h]
+
+
+def next_shares(
+    shares: Floats, alike: Floats, square: Floats, covariance: Floats, hours: float
+) -> Floats:
+    """Return the error shares (z,) of the stretches after one step of Fisher scoring.
+
+    `alike` (z, z) is the prior correlation of the errors of the stretches, relative to `shares`;
+    `square` and `covariance` (z, z) are the means over a record of length `hours` of the products
+    of their estimates and of their posterior covariance. The logarithms of the shares have a
+    normal prior.
+    """
+    inverse = np.linalg.inv(alike)
+    known = inverse @ (alike - covariance)
+    slope = np.diag(inverse @ (square + covariance)) - 1.0
+    information = known * known.T + (known @ inverse) * (alike - covariance)
+    place = np.linspace(0.0, 1.0, len(shares))
+    near = np.exp(-np.abs(place[:, None] - place) / SHARE_REACH)
+    prior = np.linalg.inv(ALL_SHARES**2 + EACH_SHARE**2 * near)
+    prior *= min(2.0 * LINE_HOURS / max(hours, 1e-9), 1.0)  # times close together count once
+    step = np.linalg.solve(information + prior, slope - prior @ np.log(shares / SHARE))
+    step *= SHARE_STEP / max(float(np.abs(step).max()), SHARE_STEP)
+    return np.asarray(np.clip(shares * np.exp(step), *SHARES), np.float64)
 
 
 class CurrentSmoother:
@@ -192,7 +218,7 @@ class CurrentSmoother:
         self.spread = np.maximum(self._along(place, spread), LEAST_SPREAD)
         flags = np.unique(one.flag[np.isfinite(one.u)])
         by_flag = {f: FLAGGED.get(f, FLAGGED[4]) for f in flags.tolist()}
-        self.scales = ErrorScales(by_flag, tide=one.tide_deviation)
+        self.scales = ErrorScales(by_flag, np.full(STRETCHES, SHARE), tide=one.tide_deviation)
         self.levels = np.where(np.isfinite(one.level_depth), one.level_depth, place)
         self.knot_depth = self.knots.at(self.levels)
         self.state = np.zeros((len(one.time), self.columns.count))
@@ -207,7 +233,6 @@ class CurrentSmoother:
         self.begin = np.append(wide * begin, np.full(sensors, STEP**2))
         self.first = self.begin
         self.tail = np.repeat([TAILS["datum"], 0.0, TAILS["place"]], [1, sensors, sensors])
-        self._last, self._longer = 0.0, 4.0
         self.factor = np.zeros(len(self.names))
         step = np.diff(self.hours, prepend=self.hours[:1])
         steps = np.repeat([1.0, 0.0, 1.0], [1, sensors, sensors])  # zeros are constant
@@ -301,7 +326,7 @@ class CurrentSmoother:
         edges = np.linspace(self.still.max(), self.still.min(), STRETCHES + 1)
         own = np.clip(np.searchsorted(-edges, -self.still, "right") - 1, 0, STRETCHES - 1)
         middle = 0.5 * (edges[1:] + edges[:-1])
-        span = max(line_response.SPAN * float(np.ptp(self.still)), 1.0)
+        span = max(SPAN * float(np.ptp(self.still)), 1.0)
         return edges, own, np.exp(-np.abs(middle[:, None] - middle) / span)
 
     def by_line(self, there: Floats) -> Floats:
@@ -316,7 +341,7 @@ class CurrentSmoother:
         upper, lower = down[:, order[after - 1]], down[:, order[after]]
         at_edge = (1.0 - share) * upper + share * lower
         result = np.diff(at_edge, axis=1)[:, None, :] * (np.arange(STRETCHES) < own[:, None])
-        result[:, np.arange(len(own)), own] = down - at_edge[:, own] + line_response.LOCAL * down
+        result[:, np.arange(len(own)), own] = down - at_edge[:, own]
         return result
 
     # --- the law
@@ -460,18 +485,6 @@ class CurrentSmoother:
         drag = 2.0 * METERS_ALIKE * np.array([name.endswith("_drag") for name in self.names])
         self.common_covariance[: len(drag), : len(drag)] += np.outer(drag, drag)
 
-    def _grown(self, step: float) -> float:
-        """Return the relative error of the line after a step in the logarithm of this error.
-
-        Expectation and maximisation takes short steps if the pressures constrain the error poorly.
-        Successive steps with the same sign are therefore lengthened.
-        """
-        same = step * self._last > 0.0
-        self._longer = min(1.5 * self._longer, LONGER) if same else max(self._longer / 3.0, 1.0)
-        self._last = step
-        whole = float(np.clip(self._longer * step, -0.4, 0.4))
-        return float(np.clip(self.scales.share * np.exp(whole), *SHARES))
-
     def _heavy(self, square: Floats) -> Floats:
         """Return initial variances of Student-distributed unknowns from their expected squares."""
         wide = self.begin + self.tail * (square - self.begin)
@@ -482,9 +495,9 @@ class CurrentSmoother:
         now, left, wide = np.empty_like(self.state), law.read.copy(), np.empty_like(law.read)
         variance, curved = np.empty_like(there), np.empty_like(there)
         stay = np.zeros_like(self.stepped)
-        alike = np.linalg.inv(self._stretches[2])
         noise_share = np.ones(count)
-        share, tide = np.zeros(count), np.zeros(count)
+        tide, alike = np.zeros(count), self._stretches[2]
+        bent, known = np.zeros_like(alike), np.zeros_like(alike)
         for each in smoothed(law):
             t, spread = each.times, each.covariance
             now[t] = each.mean
@@ -504,8 +517,8 @@ class CurrentSmoother:
             noise_share[t] += (1.0 - law.fade[t, 0] ** 2) * excess / len(steady)
             z = each.mean[:, at.share]
             tide[t] = each.mean[:, at.tide.start] ** 2 + spread[:, at.tide.start, at.tide.start]
-            share[t] = ((z @ alike) * z).sum(axis=1)
-            share[t] += (alike * spread[:, at.share, at.share]).sum(axis=(1, 2))
+            bent += z.T @ z
+            known += spread[:, at.share, at.share].sum(axis=0)
         begun = now[0, at.stays] ** 2 + spread[0, at.stays, at.stays].diagonal()
         wide[:, : 2 * one.u.shape[1]] /= self.alike
         square = left**2 + wide
@@ -525,8 +538,9 @@ class CurrentSmoother:
                     flag[f] = float(np.clip(flag[f] * ratio[mine].mean(), *FLAG_RANGE))
             self.scales = replace(self.scales, flag=flag)
         if turn >= SETTLED:
-            grown = self._grown(float(0.5 * np.log(share.mean() / STRETCHES)))
-            self.scales = replace(self.scales, share=grown)
+            span = float(np.ptp(self.hours))
+            shares = next_shares(self.scales.share, alike, bent / count, known / count, span)
+            self.scales = replace(self.scales, share=shares)
         if turn >= 2 and count > 1:
             hours = float(np.clip(self.scales.hours / noise_share[1:].mean(), *HOURS))
             usual = min(float(np.sqrt(tide.mean())), one.tide_deviation)
@@ -568,7 +582,8 @@ class CurrentSmoother:
         named = dict(zip(self.names, factors, strict=True))
         count = len(named) + 1 + len(zero)
         covariance = self.common_covariance[:count, :count]
-        return Common(named, float(datum[0]), zero + place, covariance, self.scales.share)
+        share = float(np.sqrt(np.square(self.scales.share).mean()))
+        return Common(named, float(datum[0]), zero + place, covariance, share)
 
     @cached_property
     def best(self) -> Forward:
@@ -659,10 +674,8 @@ class CurrentSmoother:
         down = np.maximum(there - self.still, 1.0)[:, one.point]
         bend = np.minimum(0.5 * np.einsum("nss->ns", by_currents) / down, down)
         known = np.isfinite(part.depth)
-        bent = self.by_line(there)[:, one.point]
-        expected = by_currents + self.scales.share**2 * bent @ self._stretches[2] @ bent.transpose(
-            0, 2, 1
-        )
+        bent = self.scales.share * self.by_line(there)[:, one.point]
+        expected = by_currents + bent @ self._stretches[2] @ bent.transpose(0, 2, 1)
         noise = np.where(known, common_unknowns.NOISE**2, line_response.UNMEASURED**2)
         expected += one.tide_deviation**2 + noise[:, :, None] * np.eye(len(one.label))
         fixed = common_unknowns.fixed_slopes(factors)
