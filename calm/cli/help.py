@@ -80,6 +80,18 @@ class HelpAtWidth:
                 panel.entries[place] = entry.copy(metavar=f"{value}{several}")
         DefaultFormatter()(console, options, panel)
 
+    def render_description(self, console: Console, options: ConsoleOptions, text: Any) -> None:
+        """Print the description of a command, with its paragraphs wrapped to the width."""
+        from cyclopts.help import DefaultFormatter
+        from rich.text import Text
+
+        written = getattr(text, "primary_renderable", None)
+        if isinstance(written, Text):
+            paragraphs = written.plain.split("\n\n")
+            joined = "\n\n".join(" ".join(one.split()) for one in paragraphs)
+            text.primary_renderable = Text(joined)
+        DefaultFormatter().render_description(console, options, text)
+
     def render_usage(self, console: Console, options: ConsoleOptions, usage: Any) -> None:
         """Print the usage line with the name of each value instead of its type."""
         from cyclopts.help import DefaultFormatter

@@ -36,6 +36,7 @@ def waves(
     current. The linear drag dissipates the same power as the quadratic drag. A
     linear model is not valid if a piece goes slack; the status is then
     slack-in-waves, and the exit code is 3.
+
     Without --hs, --scatter or a file for --spectrum, CALM uses the sea states
     under `waves:` in the environment, which may also specify a swell and a
     peakedness.

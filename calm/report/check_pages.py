@@ -339,7 +339,7 @@ def _inventory(signed: SignedMooring) -> Table:
 
 
 def basis_page(signed: SignedMooring, page_size: str = "a4") -> Iterator[Block]:
-    """Yield limits, environments, exclusions, the mooring file, and the hash of all inputs."""
+    """Yield limits, the hash of all inputs, environments, exclusions and the mooring file."""
     assessment = signed.assessment
     waters = {
         one.leg.file.environment.name or DEFAULT_ENVIRONMENT: one.leg.water
@@ -356,17 +356,17 @@ def basis_page(signed: SignedMooring, page_size: str = "a4") -> Iterator[Block]:
     name = provenance.file_name(assessment.file)
     limits, environment = _limits([*_limits_that_count(signed)]), _environment(waters, tides)
     beside = environment, blocks.Heading("Not covered"), Prose(unseen)
-    yield Beside((limits,), beside, 0.62)
+    inputs = Prose((
+        "SHA-256 of the inputs (mooring file and all catalogue values used):",
+        signed.sha256,
+    ))  # fmt: skip
+    yield Beside((limits, inputs), beside, 0.62)
     yield from (history := [*_history(assessment.file)])
     listing = "The file can no longer be read." if text is None else text.rstrip()
     above = max(len(limits.rows), len(environment.rows) + _UNJUDGED)
     above += sum(len(table.rows) + 3 for table in history)
     room = TEXT_HEIGHT[page_size] - _AROUND - _ROW * above
     yield Listing("Mooring file", listing, name, 2 * int(room / _LISTED))
-    yield Prose((
-        "SHA-256 of the inputs (mooring file and all catalogue values used):",
-        signed.sha256,
-    ))  # fmt: skip
 
 
 _AROUND, _ROW, _LISTED = 95.0, 12.6, 6.5

@@ -63,6 +63,14 @@ def test_help_of_every_command_shows_an_example(calm, command):
     assert f"  calm {command}" in done.out
 
 
+def test_paragraphs_of_the_help_are_wrapped_to_the_width(calm, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "130")
+    lines = calm("check", "--help").out.splitlines()
+    first = lines.index(next(one for one in lines if one.startswith("Each mooring is solved")))
+    paragraph = lines[first : lines.index("", first)]
+    assert len(paragraph) > 2 and all(len(one) > 110 for one in paragraph[:-1])
+
+
 @pytest.mark.parametrize(
     ("words", "told"),
     [
