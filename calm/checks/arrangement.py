@@ -297,7 +297,7 @@ def clamp_grip_in_transit(handling: Handling) -> Iterator[Verdict]:
     """Check the grip of each clamp against the larger of its axial forces in launch and recovery.
 
     Each force [N] results from the submerged weight of the clamped item and its drag in flow along
-    the line. The speed of the flow is the touchdown speed of the anchor in the launch, and the
+    the line. The speed of the flow is the touchdown speed of the anchor during launch, and the
     terminal rise speed of the line in the recovery. A line that is hauled in has no ascent.
     """
     launch, rise = handling.launch, None if is_hauled_in(handling) else handling.recovery

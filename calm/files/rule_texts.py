@@ -309,7 +309,7 @@ RULES = {
         "URI GSO mooring program: if any one link breaks, everything above the release still "
         "floats; CALM itself sets the margin",
         _ONCE),
-    "launch-strength": RuleText("Strength in the launch", "load",
+    "launch-strength": RuleText("Strength during launch", "load",
         "maximum tension of every piece during the anchor drop",
         "The tension must not exceed the working load times `launch_working_factor` (1), nor the "
         "breaking load divided by `launch_safety_factor` (2); the loads are those of the rule "

@@ -169,7 +169,7 @@ _CODES = {"L": "launch", "R": "rise", "B": "break", "w": "in waves"}
 
 
 def _title(finding: Finding) -> str:
-    return RULES[finding.rule].title.lower().replace(" in the ", ", ")
+    return RULES[finding.rule].title.lower().replace(" during ", ", ")
 
 
 def _rows(every: Sequence[Finding]) -> tuple[list[Finding], list[Finding]]:

@@ -239,7 +239,7 @@ def test_the_sentence_names_what_is_beyond_its_limit_without_failing(assessments
     items = "one warning (fish bite), one accepted exception"
     assert said.startswith(f"No check fails. Open items: {items}")
     beyond = said.partition("Above 100\u00a0% without being a failure: ")[2]
-    assert beyond.startswith("lower swivel, 126\u00a0% (strength in the launch)")
+    assert beyond.startswith("lower swivel, 126\u00a0% (strength during launch)")
     assert "fish bite" not in beyond  # a rule with two states
 
 
