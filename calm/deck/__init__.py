@@ -121,6 +121,7 @@ class Deck:
     cuts, hardware, shipped, lifts, instruments : contents of the sheets of the same names
     plan : plan of the anchor drop, or the reason why it could not be computed; None for an
         anchor-first deployment, and for a net
+    environments : names of the environments in which the mooring has an equilibrium
     notes : missing information, with reasons
     assessment : result of the design check
     """

@@ -295,9 +295,9 @@ def name_of_run(items: Sequence[DeckItem]) -> str:
 
 
 def standing_out(findings: Iterable[Finding]) -> frozenset[str]:
-    """Return the labels of pieces that are drawn separately because of the design check.
+    """Return the labels of parts that are drawn separately because of the design check.
 
-    These pieces have an open finding, or they govern a check with a utilisation above `SHOWN_USE`.
+    These parts have an open finding, or they govern a check with a utilisation above `SHOWN_USE`.
     """
     every = [*findings]
     found = {one.component for one in governing_of_each_rule(every)

@@ -271,7 +271,7 @@ class Missing:
 
 
 def missing_figures(view: View, draft: Draft) -> list[Missing]:
-    """Return the component values that findings report as missing, in the order of the line."""
+    """Collect the values that findings report as missing, by component in line order."""
     if view.file is None:
         return []
     wanted: dict[Place, dict[str, None]] = {}

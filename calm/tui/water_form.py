@@ -221,7 +221,7 @@ class FormChoice(Cycle):
     """Selector of the form in which a water property is given.
 
     The arrows show other forms, and Enter accepts the form shown. If the focus leaves without
-    Enter, the current form is shown again.
+    Enter, the form in the draft is shown again.
     """
 
     BINDINGS = key_table.bindings("given")
@@ -238,7 +238,7 @@ class FormChoice(Cycle):
         self._given = forms[0]
 
     def show(self, word: str) -> None:
-        """Show the current form."""
+        """Show the form in the draft."""
         self._given = word
         super().show(word)
 
