@@ -121,6 +121,7 @@ class Deck:
     cuts, hardware, shipped, lifts, instruments : contents of the sheets of the same names
     plan : plan of the anchor drop, or the reason why it could not be computed; None for an
         anchor-first deployment, and for a net
+    environments : names of the environments in which the mooring has an equilibrium
     notes : missing information, with reasons
     assessment : result of the design check
     """
@@ -195,7 +196,7 @@ def deck_of(
     """
     first = moorings[0]
     notes: list[str] = []
-    result = _standing(first, notes)
+    result = _solved(first, notes)
     notes += result.warnings
     results = [(_name(first), result)]
     for other in moorings[1:]:
@@ -251,19 +252,13 @@ def deck_of(
 
 
 def _deck_times(file: MooringFile) -> Mapping[str, float] | None:
-    """Return the handling time per piece [s] for each role; None if unspecified."""
+    """Return the handling time of a piece [s] by role, or None if unspecified."""
     given = None if file.document is None else file.document.deck_time
     return None if given is None else {str(role): time for role, time in given.items()}
 
 
-def _standing(mooring: Design, notes: list[str]) -> Result:
-    """Solve the mooring; a line that is slack in still water is solved in a weak current.
-
-    Raises
-    ------
-    NoEquilibrium
-        The mooring has no equilibrium.
-    """
+def _solved(mooring: Design, notes: list[str]) -> Result:
+    """Solve the mooring, in a weak current if a single line is slack in still water."""
     try:
         return mooring.solve()
     except NoEquilibrium as failure:
@@ -290,7 +285,7 @@ def _name(mooring: Design) -> str:
 def surfacing(
     parts: Sequence[DeckItem], pieces: Collection[int], recovery: Recovery | None
 ) -> tuple[RecoveredItem, ...]:
-    """List the rising parts in order of surfacing; parts that stay below the surface come last.
+    """List the rising parts in order of surfacing. Parts that stay below the surface come last.
 
     If `recovery` is None, the times are None and the parts are in line order.
 
@@ -323,7 +318,7 @@ def _surfacing(one: DeckItem, recovery: Recovery) -> RecoveredItem:
 def lifts_of(
     inventory: Sequence[InventoryItem], legs: Sequence[int], rising: Collection[int], order: Order
 ) -> Lifts:
-    """Compute the crane loads of a mooring, leg by leg.
+    """List the lifts of a mooring with their crane loads, leg by leg.
 
     Parameters
     ----------

@@ -131,8 +131,9 @@ class DeckItem:
 
     @property
     def places(self) -> tuple[float, ...]:
-        """Distance of a clamp from the upper end of its piece [m]; for a profiler, the distances of
-        both stops.
+        """Distance of a clamp from the upper end of its piece [m].
+
+        A profiler has two distances, one for each stop.
         """
         travel = getattr(self.part, "travel", None)
         ends = (self.at,) if travel is None else (min(end, self.of_length or end) for end in travel)
@@ -193,7 +194,7 @@ class DeckRow:
 
     @property
     def name(self) -> str:
-        """Names of the items with their counts; for a chain with floats, the name of the floats."""
+        """Names of the items with their counts. For a chain with floats: name of the floats."""
         floats = f"{len(self.floats)} × " if len(self.floats) > 1 else ""
         return floats + self.floats[0].name if self.floats else name_of_run(self.items)
 
@@ -270,7 +271,7 @@ def _joined_clusters(rows: Sequence[DeckRow]) -> Iterator[DeckRow]:
 
 
 def _lies_on(run: tuple[DeckItem, ...], row: DeckRow, items: Sequence[DeckItem]) -> bool:
-    """Return whether a run of clamps consists of floats and includes all clamps on the cable of
+    """Return whether `run` consists of equal floats and includes all clamps on the last piece of
     `row`.
     """
     first = run[0]
@@ -294,9 +295,9 @@ def name_of_run(items: Sequence[DeckItem]) -> str:
 
 
 def standing_out(findings: Iterable[Finding]) -> frozenset[str]:
-    """Return the labels of pieces that are drawn separately because of the design check.
+    """Return the labels of parts that are drawn separately because of the design check.
 
-    These pieces have an open finding, or they govern a check with a utilisation above `SHOWN_USE`.
+    These parts have an open finding, or they govern a check with a utilisation above `SHOWN_USE`.
     """
     every = [*findings]
     found = {one.component for one in governing_of_each_rule(every)
@@ -308,7 +309,7 @@ def standing_out(findings: Iterable[Finding]) -> frozenset[str]:
 
 
 SHOWN_USE = 0.4999
-"""Utilisation above which the governing finding of a rule has a separate row."""
+"""Utilisation above which the piece that governs a rule has a separate row."""
 
 
 def deck_items_of(result: AnyResult, apart: Collection[str] = ()) -> tuple[DeckItem, ...]:

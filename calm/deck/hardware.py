@@ -22,7 +22,7 @@ LENGTH_ERROR = 0.005
 """Relative error of a cut length: the default tolerance, and the error whose effect is reported."""
 
 ORDINARY = 20
-"""Number of pieces in an ordinary line, for estimates of computing time."""
+"""Number of pieces in a typical line, for estimates of computing time."""
 
 LEAST_TOLERANCE = 0.02
 """Smallest error with which a wire can be measured on deck [m]."""
@@ -30,10 +30,10 @@ LEAST_TOLERANCE = 0.02
 
 @dataclass(frozen=True)
 class Mark:
-    """Mark on a cable where an instrument is clamped.
+    """Mark on a cable, at the position of a clamp.
 
-    `label` is the label of the clamp. `at` is the distance from the upper end [m], measured while
-    the cable is under the load `Cut.load`.
+    `label` is the label of the clamp. `at` is the distance of the mark from the upper end of the
+    cable [m], measured under the load `Cut.load`.
     """
 
     label: str
@@ -54,8 +54,9 @@ class Cut:
     tolerance : allowed error of the length [m]
     effect : increase in depth of the top of the line or leg if the piece is longer by the fraction
         `LENGTH_ERROR` [m]; None if the longer line has no equilibrium
-    over, onto : number in the order in which wires and ropes go over the side, and number in the
-        reverse order, in which they are spooled onto the drum; None for a chain
+    over : number of a wire or rope in the order in which they go over the side; None for a chain
+    onto : number of a wire or rope in the reverse order, in which they are spooled onto the drum;
+        None for a chain
     """
 
     item: DeckItem
@@ -123,8 +124,8 @@ def _cut(result: Result, one: DeckItem, over: int | None, count: int) -> Cut:
 
 
 def _effect(result: Result, index: int, length: float) -> float | None:
-    """Compute the increase in depth of the top if one piece is cut too long and the water is
-    unchanged [m].
+    """Compute the increase in depth of the top [m] if one piece is longer by the fraction
+    `LENGTH_ERROR`, in the same water.
     """
     number = leg_numbers(result.file)[index]
     longer = result.design.with_length(index, length * (1.0 + LENGTH_ERROR))
@@ -137,7 +138,7 @@ def _effect(result: Result, index: int, length: float) -> float | None:
 
 
 SPARE_SHARE = 0.1
-"""Ratio of spares to fitted items (CALM default); at least one spare, or two for small parts."""
+"""Ratio of spares to fitted items (CALM default)."""
 
 _KINDS = {
     "cotter pins": r"cotter",
@@ -158,7 +159,7 @@ _SMALL = frozenset({"shackles", "pins", "cotter pins", "thimbles"})
 
 @dataclass(frozen=True)
 class Stock:
-    """Number of connecting-hardware items of one kind and component that a line needs.
+    """Connecting hardware of one kind and component: number of items that a line needs.
 
     Attributes
     ----------
@@ -178,9 +179,9 @@ class Stock:
 
     @property
     def spares(self) -> int:
-        """Number of spares: one tenth of `count`, rounded up.
+        """Number of spares: `SPARE_SHARE` of `count`, rounded up.
 
-        There are at least two spares for a small part, and at least one for any other part.
+        The minimum is two spares for a small part, and one for any other part.
         """
         return max(ceil(SPARE_SHARE * self.count), 2 if self.kind in _SMALL else 1)
 
@@ -242,9 +243,6 @@ def _pins(groups: dict[tuple[str, str], list[DeckItem]]) -> Iterator[Stock]:
 
 
 def _against_corrosion(legs: Sequence[Sequence[DeckItem]]) -> Iterator[Stock]:
-    """Yield isolators and anodes for the contacts of dissimilar metals that `calm check`
-    reports.
-    """
     contacts = [
         (base, noble)
         for leg in legs

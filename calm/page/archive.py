@@ -1,6 +1,7 @@
 """Archive of CALM and its libraries for the page, made from the installed packages.
 
-It contains only Python modules and data, because compiled libraries come with the runtime.
+The archive contains only Python modules and data. Compiled libraries come with Pyodide, the Python
+runtime of the page.
 """
 
 import importlib.metadata
@@ -17,7 +18,7 @@ from calm.shipped import shipped_folder
 LIBRARIES = ("jinja2", "pint", "rich", "textual", "xlsxwriter")
 """Distributions required by the builder and its documents."""
 IN_RUNTIME = ("numpy", "pydantic", "pyyaml", "gsw")
-"""Distributions that the runtime contains, compiled for pages, with their dependencies."""
+"""Distributions that the runtime contains as compiled libraries, with their dependencies."""
 
 _DEPENDENCIES = ("annotated-types", "pydantic-core", "typing-extensions", "typing-inspection")
 _EXCLUDED = re.compile(
@@ -25,9 +26,9 @@ _EXCLUDED = re.compile(
     r"|^calm/page/web/|^calm/verification/|^\.\./"
     r"|^pygments/(lexers|styles|formatters)/(?!__init__|_mapping|special|default|terminal)"
 )
-"""Files left out: compiled code, tests, fonts for PDF files, and most lexers."""
+"""Pattern of excluded files: compiled code, tests, fonts for PDF files, and most lexers."""
 _TIME_STAMP = (1980, 1, 1, 0, 0, 0)
-"""Time stamp of every entry."""
+"""Time stamp of every entry, fixed so that equal files give equal archives."""
 
 
 def packed(python: str) -> bytes:
@@ -73,7 +74,7 @@ def _compiled(path: Path, name: str) -> bytes | None:
 
 
 def _files() -> Iterator[tuple[str, Path]]:
-    """Yield every file as its name in the archive and its path."""
+    """Yield the name in the archive and the path of every file."""
     package = Path(__file__).parents[1]
     roots = {f"calm/_shipped/{name}": shipped_folder(name) for name in ("catalog", "lines")}
     for root, folder in {"calm": package, **roots}.items():

@@ -1,4 +1,4 @@
-"""Line builder in a web page: it receives messages from the page, and sends files and documents."""
+"""Line builder in a web page, controlled by messages from the page."""
 
 from __future__ import annotations
 
@@ -24,7 +24,10 @@ from calm.tui.start import open_session
 from calm.whole_file import decoded
 
 Post = Callable[[str, str, bytes | None], object]
-"""Function that sends a message to the page: kind, text (often a name), and file content."""
+"""Function that sends a message to the page.
+
+Its arguments are the kind, a text (often a file name), and the content of a file or None.
+"""
 
 
 class Button(NamedTuple):
@@ -66,13 +69,11 @@ class PageBuilder(BuildApp):
         self._page = page
 
     def copy_to_clipboard(self, text: str) -> None:
-        """Copy a text to the clipboard of the builder and of the browser."""
         super().copy_to_clipboard(text)
         self._page.copy(text)
 
     def get_driver_class(self) -> type[driver.PageDriver]:
-        """Return the driver of the page, because Textual's own drivers need a terminal."""
-        return driver.PageDriver
+        return driver.PageDriver  # the drivers of Textual need a terminal
 
 
 class WebPage:
@@ -80,9 +81,13 @@ class WebPage:
 
     Parameters
     ----------
-    post : function that sends a message of one of these kinds to the page: `write` (text for the
-        terminal), `open` (name of the edited file), `saved` and `document` (name and content of a
-        file), `copied` (text for the clipboard), `told` and `failed` (a sentence)
+    post : function that sends a message of one of these kinds to the page:
+
+        - `write`: text for the terminal
+        - `open`: name of the edited file
+        - `saved`, `document`: name and content of a file
+        - `copied`: text for the clipboard
+        - `told`, `failed`: a sentence for the user
     folder : folder of the files
     columns, rows : size of the terminal
     """
@@ -115,12 +120,12 @@ class WebPage:
     # the builder
 
     async def run(self) -> None:
-        """Run the builder for one file after another, without end."""
+        """Run the builder without end, each time for the file opened last."""
         while True:
             await self.build()
 
     async def build(self) -> None:
-        """Run the builder for the file opened last, until the user opens another file or quits."""
+        """Run the builder for the file opened last until the user opens another file or quits."""
         reason = ""
         try:
             session, kept = open_session(self._path)
@@ -142,10 +147,17 @@ class WebPage:
     def receive(self, message: Mapping[str, Any]) -> None:
         """Handle a message from the page.
 
-        The kinds are `key` (in Textual's notation), `type` and `paste` (text), `mouse` (see
-        `PageDriver.move_mouse`), `resize` (columns, rows), `act` (action of `BAR`), `open` (names
-        and contents of files), `example` (name of a file in `lines`), `new`, and `document` (kind
-        of document).
+        The kinds of messages are:
+
+        - `key`: a key in Textual's notation
+        - `type`, `paste`: a text
+        - `mouse`: arguments of `PageDriver.move_mouse`
+        - `resize`: number of columns and rows
+        - `act`: an action of `BAR`
+        - `open`: names and contents of files
+        - `example`: name of a file in `lines`
+        - `new`: no content
+        - `document`: kind of document
         """
         kind, app, given = message["kind"], self._app, self.terminal.driver
         if kind == "key" and given is not None:
@@ -163,7 +175,7 @@ class WebPage:
         elif kind == "resize":
             self.terminal.resize(message["columns"], message["rows"])
         elif kind == "act" and app is not None:
-            self._act(app, message["text"])
+            self._run_button(app, message["text"])
         elif kind == "open":
             self._open({str(name): bytes(content) for name, content in message["files"]})
         elif kind == "example":
@@ -174,10 +186,9 @@ class WebPage:
             path.touch()  # so that a later visit finds its unsaved work
             self._turn_to(path)
         elif kind == "document":
-            self._make(message["text"])
+            self._make_document(message["text"])
 
-    def _act(self, app: PageBuilder, name: str) -> None:
-        """Run the action of a button; an action on the line is run by simulating its key."""
+    def _run_button(self, app: PageBuilder, name: str) -> None:
         if name.startswith("app."):
             app.call_later(app.run_action, name)
         elif app.screen is not app.builder:
@@ -214,14 +225,13 @@ class WebPage:
             self._app.take_typed()
             self._app.exit(0)
 
-    def _make(self, kind: str) -> None:
-        """Create a document as soon as the current text has been solved."""
+    def _make_document(self, kind: str) -> None:
         app = self._app
         if app is None:
             return
         app.take_typed()
-        if not app.workspace.is_fresh:
-            asyncio.get_running_loop().call_later(0.1, self._make, kind)
+        if not app.workspace.is_fresh:  # wait until the current text is solved
+            asyncio.get_running_loop().call_later(0.1, self._make_document, kind)
             return
         view = app.workspace.view
         assert view is not None
@@ -251,7 +261,7 @@ def _is_mooring(path: Path) -> bool:
 
 
 def _touched(path: Path) -> float:
-    """Return the time at which a file, or its backup copy, was last written."""
+    """Return the time [s since 1970] when a file or its backup copy was last written."""
     kept = path.parent.glob(f".{path.name}.*{SUFFIX}")
     return max(each.stat().st_mtime for each in (path, *kept))
 

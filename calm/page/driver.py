@@ -67,20 +67,16 @@ class PageDriver(Driver):
 
     @property
     def is_web(self) -> bool:
-        """True, so that Textual does not wait for replies from a terminal."""
-        return True
+        return True  # otherwise Textual waits for replies from a terminal
 
     def write(self, data: str) -> None:
-        """Send the output of the terminal to the page."""
         self._terminal.write(data)
 
     def start_application_mode(self) -> None:
-        """Start full-screen drawing in the terminal of the page."""
         self.write(_BEGIN)
         self.show_size()
 
     def stop_application_mode(self) -> None:
-        """End full-screen drawing and release the terminal."""
         self.write(_END)
         if self._terminal.driver is self:
             self._terminal.driver = None
@@ -123,12 +119,10 @@ class PageDriver(Driver):
         self.process_message(_MOUSE_EVENTS[kind](None, x, y, *change, button, *keys, x, y))
 
     def send_message(self, message: Message) -> None:
-        """Post a message to the application directly, since a page has only one thread."""
-        self._application.post_message(message)
+        self._application.post_message(message)  # directly: a page has only one thread
 
 
 def _key_name(character: str) -> str | None:
-    """Return Textual's name of the key for a character; None for a control code without a key."""
     if character.isalnum():
         return character
     if not character.isprintable():

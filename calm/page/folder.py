@@ -16,7 +16,7 @@ from calm.version import __version__
 from calm.whole_file import put
 
 PYODIDE = "https://cdn.jsdelivr.net/pyodide/v0.29.5/full/"
-"""Address of the runtime, for pages without a copy."""
+"""Address of Pyodide, the Python runtime, for pages without their own copy."""
 PYTHON = "3.13"
 """Python version of the runtime."""
 TERMINAL = "https://cdn.jsdelivr.net/npm/@xterm/xterm@6.0.0/"
@@ -66,7 +66,6 @@ def write_page(folder: Path, runtime: Path | None = None) -> list[str]:
 
 
 def _settings(own: dict[str, bytes], found: dict[str, Path]) -> dict[str, Any]:
-    """Return the settings for the scripts of the page: addresses and menu entries."""
     digest = hashlib.sha256()
     for name in sorted(own):
         digest.update(own[name])
@@ -89,7 +88,6 @@ def _settings(own: dict[str, bytes], found: dict[str, Path]) -> dict[str, Any]:
 
 
 def _examples() -> list[dict[str, str]]:
-    """Return the file name and the title of each mooring shipped with CALM."""
     found = []
     for path in sorted(shipped_folder("lines").glob("*.yaml")):
         lines = path.read_text(encoding="utf-8").splitlines()
@@ -104,7 +102,6 @@ def _lock(path: Path) -> dict[str, Any]:
 
 
 def _runtime_files(runtime: Path) -> dict[str, Path]:
-    """Return the required files of a runtime as paths by name."""
     if not runtime.is_dir():
         raise UsageError(f"--runtime: there is no folder {runtime}")
     there: dict[str, Path] = {}

@@ -1,4 +1,4 @@
-"""Input sheets for keys of the file and for single rows, derived from the file models."""
+"""Input sheets for sections of the file and for single rows, generated from the file models."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from calm.tui.live import View
 
 Sheet = tuple[InputSheet, str, Callable[[Draft, Mapping[str, str]], Draft]]
-"""An input sheet, the label of the resulting change, and a function that applies the entered
-texts.
+"""An input sheet, the label of the resulting change, and a function that writes the entered texts
+to a draft.
 """
 
 _BEGIN_A_TOW = (
@@ -43,7 +43,7 @@ SHEETS = {
     "deployed": ("As deployed", ("deployed", "releases")),
     "tow": ("The tow", ("tow",)),
 }
-"""Titles of sheets, and the keys of the file that each sheet contains."""
+"""Title of each sheet, and the keys of the file that the sheet contains, by name of the sheet."""
 _ABOUT = {
     "document": "These entries fill the title block of drawings, with its revision history.",
     "tow": _BEGIN_A_TOW,
@@ -51,14 +51,14 @@ _ABOUT = {
 
 
 def settings() -> list[str]:
-    """Return the sections of the file that have a model but no sheet in `SHEETS`."""
+    """Return the names of the file sections that have a model but no sheet in `SHEETS`."""
     known = {key for _, keys in SHEETS.values() for key in keys}
     fields = MooringKeys.model_fields.items()
     return [name for name, each in fields if name not in known and model_in(each.annotation)]
 
 
 def sheet_of(name: str, draft: Draft, part: Piece | Clamp | None) -> Sheet:
-    """Create a sheet with the values in the file, and return it as a `Sheet`.
+    """Create a sheet that shows the values in the file.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def _top_level(key: str) -> list[FormField]:
 
 
 def part_of_row(file: MooringFile | None, spot: Place | None) -> Piece | Clamp | None:
-    """Return the piece or clamp of a row; None unless the row has exactly one piece or clamp."""
+    """Return the piece or clamp of a row, or None if the row has several or none."""
     found = [part for part in parts_of(file.pieces if file else ()) if part.place.row == spot]
     return found[0] if len(found) == 1 else None
 
@@ -92,7 +92,6 @@ def part_of_row(file: MooringFile | None, spot: Place | None) -> Piece | Clamp |
 def _deployed_sheet(
     draft: Draft, part: Piece | Clamp | None, form_fields: list[FormField]
 ) -> Sheet:
-    """Return the sheet *As deployed* for one part, or for all parts if there is no part."""
     if part is None:
         sheet = InputSheet("As deployed", _COMPARED, filled(form_fields, draft.value(())))
         return sheet, "the deployment", written
@@ -153,13 +152,13 @@ def equipment_changes(
 
 
 def texts_of_equipment(values: Mapping[str, Any], key: str) -> str:
-    """Convert the value of an equipment key to typed text, with commas between several values."""
+    """Return the value of an equipment key as a text, with commas between several values."""
     value = values.get(key)
     return ", ".join(map(str, value)) if isinstance(value, list) else str(value or "")
 
 
 def serial_of_equipment(text: str) -> Reading:
-    """Check a text that contains the serial numbers of a row, separated by commas."""
+    """Check the serial numbers of a row, typed with commas between them."""
     numbers = [" ".join(one.split()) for one in text.split(",")]
     if len(numbers) > 1 and not all(numbers):
         return Reading("", "a number is blank")
@@ -167,7 +166,7 @@ def serial_of_equipment(text: str) -> Reading:
 
 
 def entry_text(draft: Draft, rows: Location, called: tuple[str, str], key: str) -> str:
-    """Return the text of a key in an entry of a list in the file, or "".
+    """Return the text of a key in a list entry of the file, or "" if there is no such entry.
 
     Parameters
     ----------
@@ -181,7 +180,7 @@ def entry_text(draft: Draft, rows: Location, called: tuple[str, str], key: str) 
 def entered(
     draft: Draft, rows: Location, called: tuple[str, str], texts: Mapping[str, str]
 ) -> Draft:
-    """Write texts to an entry of a list in the file (see `entry_text`); return the new draft.
+    """Write texts to a list entry of the file (see `entry_text`), and return the new draft.
 
     A missing entry is added. An entry is deleted if only its identifying key remains.
     """
@@ -244,10 +243,10 @@ class Missing:
     ----------
     use, kind : id and kind of the component
     labels : labels of the pieces and clamps concerned, as keys of a dict
-    targets : locations in the file to which each missing value is written, by key. This is the
-        definition of the component, if the file has one. Otherwise these are all rows that lack the
-        value or, for a part of an assembly, the row of the assembly. Rows that cannot hold the
-        value are omitted.
+    targets : locations in the file to which each missing value is written, by key. If the file
+        defines the component, the location is this definition. Otherwise the locations are all rows
+        that lack the value; for a part of an assembly, this is the row of the assembly. Rows that
+        cannot hold the value are omitted.
     estimates : estimates for the class of component, by key, as texts without their source
     """
 
@@ -272,7 +271,7 @@ class Missing:
 
 
 def missing_figures(view: View, draft: Draft) -> list[Missing]:
-    """Return the component values that findings report as missing, in the order of the line."""
+    """Collect the values that findings report as missing, by component in line order."""
     if view.file is None:
         return []
     wanted: dict[Place, dict[str, None]] = {}

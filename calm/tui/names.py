@@ -1,4 +1,4 @@
-"""References to labels, which are updated with the labels, and the choice of the environment."""
+"""References to labels, updated when labels change, and the choice of the environment."""
 
 import os.path
 from collections.abc import Iterable, Iterator, Mapping
@@ -112,7 +112,7 @@ def followed(before: Draft, after: Draft, moved: Mapping[Place, Place]) -> tuple
 def _new_reference(
     text: str, wanted: set[str], renamed: Mapping[str, str], labels: Iterable[str]
 ) -> str | None:
-    """Return the text of a reference that matches the new labels, or None."""
+    """Return a new text with which a reference matches the new labels, or None."""
     labels = list(labels)
     if text in renamed:
         return renamed[text]
@@ -170,7 +170,7 @@ class EnvironmentChoice:
 
     @property
     def lost_environment(self) -> str | None:
-        """Chosen environment if the file can be read but no longer has it; otherwise None."""
+        """Chosen environment if a readable file no longer has this environment, otherwise None."""
         here = self._environment
         is_there = self._is_file or self._history.draft.problems or here in self.environments
         return None if is_there else here

@@ -18,8 +18,9 @@ from rich.cells import cell_len
 from textual.driver import Driver
 
 Cell = tuple[str, str]
-"""A character and its style, the codes of SGR (ECMA-48); the second cell of a wide character is
-empty.
+"""A character and its style, as SGR codes (ECMA-48).
+
+A wide character has a second cell without a character.
 """
 
 _TOKEN = re.compile(
@@ -73,7 +74,7 @@ class Painted:
         self._touched.update(range(len(self._wanted)))
 
     def take(self, text: str) -> str:
-        """Store the cells that a text contains; return the rest of the text, to be sent at once."""
+        """Store the cells of an output text, and return the rest, which must be sent at once."""
         text = self._rest + text
         cut = _INCOMPLETE.search(text)
         self._rest = text[cut.start() :] if cut else ""
@@ -183,7 +184,7 @@ class TerminalOutput:
         return type(f"Painting{terminal.__name__}", (_PaintingDriver, terminal), {"output": self})
 
     def take(self, text: str, send: Callable[[str], None]) -> None:
-        """Store the cells that a text contains, and send the rest of the text at once."""
+        """Store the cells of an output text, and send the rest of the text at once."""
         with self._lock:
             self._send = send
             if at_once := self._painted.take(text):
@@ -202,7 +203,7 @@ class TerminalOutput:
                 self._send(changes + self._pace.question(time.monotonic()))
 
     def answered(self) -> None:
-        """Send the next frame, since the terminal has displayed the previous one."""
+        """Send the next frame after the terminal has displayed the previous frame."""
         with self._lock:
             if self._late is not None:
                 self._late.cancel()

@@ -14,7 +14,7 @@ class Commands(CommandPalette):
     """Command palette of Textual, adapted to terminals of any height."""
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Disable the page keys if the list has no visible line."""
+        # page keys need a visible line of the list
         is_page = action == "command_list" and str(parameters[0]).startswith("page")
         return not is_page or self.query_one(CommandList).size.height > 0
 
@@ -29,12 +29,10 @@ class Actions(Provider):
         return [each for each in (*ACTIONS["line"], *ACTIONS["anywhere"]) if each.palette]
 
     async def discover(self) -> Hits:
-        """Yield all actions until a text is typed."""
         for action in self._offered:
             yield DiscoveryHit(_shown(action), self._run(action), help=action.meaning)
 
     async def search(self, query: str) -> Hits:
-        """Yield the actions whose title or meaning matches the words."""
         matcher = self.matcher(query)
         for action in self._offered:
             score = max(matcher.match(action.title), 0.8 * matcher.match(action.meaning))

@@ -128,13 +128,11 @@ class Pictures(Vertical):
         self._caption = Static("dashed: the saved line", id="beside", markup=False)
 
     def compose(self) -> ComposeResult:
-        """Yield the tabs, the caption and the picture."""
         yield self._tabs
         yield self._caption
         yield self._picture
 
     def on_mount(self) -> None:
-        """Show the tabs before the first solution."""
         self._show()
 
     def show(self, view: View | None, note: str = "") -> None:
@@ -148,7 +146,6 @@ class Pictures(Vertical):
         self._show()
 
     def watch_tab(self) -> None:
-        """Draw the picture of the selected tab."""
         self._show()
 
     def _show(self) -> None:
@@ -160,10 +157,6 @@ class Pictures(Vertical):
     @on(events.DescendantFocus)
     @on(events.DescendantBlur)
     def _show_tabs(self) -> None:
-        """Show the tabs, with the current tab in reverse video.
-
-        If the picture has the focus, a cursor precedes the tabs.
-        """
         parts = [theme.CURSOR if self._picture.has_focus else " "]
         for number, tab in enumerate(TABS, 1):
             style = ("[reverse bold]", "[/]") if tab == self.tab else ("", "")
@@ -172,7 +165,6 @@ class Pictures(Vertical):
         self._tabs.update("".join(parts), layout=False)
 
     def on_click(self, event: events.Click) -> None:
-        """Give the picture the focus."""
         self._picture.focus()
 
 

@@ -27,7 +27,9 @@ _READ_AGAIN = "Reloaded: the file was changed by another program"
 
 
 class Saving:
-    """Saver of the file of a workspace, which asks before it overwrites, and watches for changes.
+    """Saver of the file of a workspace.
+
+    The user is asked before a file is overwritten. Changes by other programs are detected.
 
     Parameters
     ----------
@@ -50,7 +52,10 @@ class Saving:
         self._reported: tuple[object] | None = None  # state on the disk that was reported last
 
     def save(self, then: Then | None = None) -> None:
-        """Save the file, asking for a name if it has none; call `then` after a successful save."""
+        """Save the file, and call `then` after a successful save.
+
+        If the file has no name, the user is asked for a name.
+        """
         file = self._session.file
         if file.path is None:
             self.save_as(then)
@@ -68,7 +73,7 @@ class Saving:
             self._workspace.tell(f"Not saved: {str(error).replace(folder, '')}", wrong=True)
             return
         self.presence.announce(self._session.file.path)
-        wrong = self._mistake()
+        wrong = self._first_mistake()
         but = "; ".join(filter(None, [lost, wrong]))
         message = f"{self._session.name} saved" + (f", but {but}" if but else "")
         self._workspace.tell(message, wrong=bool(wrong))
@@ -76,16 +81,13 @@ class Saving:
         if then is not None and not wrong:
             then()
 
-    def _mistake(self) -> str:
-        """Return a sentence on the first mistake in the saved file, or "".
-
-        Missing parts of the line do not count as mistakes.
-        """
+    def _first_mistake(self) -> str:
         session = self._session
         path = session.file.path or Path(session.name)
         try:
             read_mooring(path, catalogs=session.catalogs, text=session.draft.text, stand_in=True)
         except InputError as error:
+            # missing parts of the line are no mistakes
             found = [each for each in error.problems if not each.lacks]
             if found:
                 place = place_of(found[0], path)
@@ -94,7 +96,7 @@ class Saving:
         return ""
 
     def save_as(self, then: Then | None = None, begin: Path | None = None) -> None:
-        """Save under a new file name, for which `begin` is suggested."""
+        """Ask for a new file name, suggesting `begin`, and save the file under this name."""
         path = self._session.file.path
 
         def take(texts: dict[str, str]) -> None:
@@ -108,16 +110,14 @@ class Saving:
 
         initial = str(begin or path or "")
         fields = [
-            FormField("path", "File", initial, _is_writable, placeholder="e.g. iroise-2026.yaml")
+            FormField(
+                "path", "File", initial, _check_file_name, placeholder="e.g. iroise-2026.yaml"
+            )
         ]
         text = f"Relative to {Path.cwd()}."
         enter(self._app, "Save as", text, fields, take)
 
     def _ask_to_overwrite(self, path: Path, then: Then | None) -> None:
-        """Request a confirmation before another file is overwritten.
-
-        A confirmation is also needed if the file is write-protected or has changed on the disk.
-        """
         session, file = self._session, self._session.file
         is_own, stamp = path == file.path, file.stamp
         is_changed = is_own and stamp is not None and file.changed_on_disk()
@@ -256,15 +256,13 @@ def chosen_path(text: str) -> Path:
 
 
 def _free_name(path: Path) -> Path:
-    """Return a similar file name that is not in use."""
     number = 2
     while (free := path.with_name(f"{path.stem}-{number}{path.suffix}")).exists():
         number += 1
     return free
 
 
-def _is_writable(text: str) -> Reading:
-    """Check that a typed name is a possible name of a file in an existing folder."""
+def _check_file_name(text: str) -> Reading:
     tidy = text.strip()
     if not tidy:
         return Reading("", "a name is needed")

@@ -27,7 +27,6 @@ class DraftScreen(Screen[None]):
         self.workspace, self.session = workspace, workspace.session
 
     def compose(self) -> ComposeResult:
-        """Yield the title, the parts and the keys."""
         for at_least, of_width in sorted(self.HORIZONTAL_BREAKPOINTS or (), reverse=True):
             if self.app.size.width >= at_least:
                 # setting the class after the mount would style every widget again
@@ -38,7 +37,6 @@ class DraftScreen(Screen[None]):
         yield KeyBar()
 
     def on_mount(self) -> None:
-        """Show the title."""
         self.show_title()
 
     # implemented by subclasses
@@ -89,11 +87,9 @@ class DraftScreen(Screen[None]):
         self.query_one(KeyBar).tell(text, wrong=wrong)
 
     def action_undo(self) -> None:
-        """Accept typed text, then undo the last change."""
         self._go("undone", self.session.history.undo)
 
     def action_redo(self) -> None:
-        """Redo the last undone change."""
         self._go("redone", self.session.history.redo)
 
     def _go(self, what: str, step: Callable[[], str | None]) -> None:
@@ -129,7 +125,6 @@ class TitleBar(Widget):
             self.refresh()
 
     def render(self) -> Text:
-        """Render both texts; the left text is truncated if necessary."""
         width = self.content_size.width
         text, verdict, old = self._texts
         right = Text(verdict, style="dim" if old else "", no_wrap=True)
@@ -177,7 +172,6 @@ class KeyBar(Static):
         self._show()
 
     def on_resize(self) -> None:
-        """Show as many keys as fit."""
         self._show()
 
     def _show(self) -> None:

@@ -33,7 +33,6 @@ class Scrolled(ScrollView, inherit_bindings=False):
     virtual_size = Reactive(Size(0, 0), repaint=False)
 
     def watch_virtual_size(self, size: Size) -> None:
-        """Update the scroll bars; scroll back if the content has become shorter."""
         window = self.container_size
         down = self.styles.overflow_y != "hidden" and size.height > window.height > 0
         if down or self.show_vertical_scrollbar:
@@ -49,16 +48,14 @@ class Scrolled(ScrollView, inherit_bindings=False):
             self.scroll_to(y=self.max_scroll_y, animate=False)
 
     def on_focus(self) -> None:
-        """Draw the cursor."""
-        self.refresh()
+        self.refresh()  # draws the cursor
 
     def on_blur(self) -> None:
-        """Remove the cursor."""
-        self.refresh()
+        self.refresh()  # removes the cursor
 
 
 class DrawnRows(Scrolled, can_focus=False):
-    """Widget whose rows are drawn for its size, and drawn again when the size changes."""
+    """Widget that draws its rows to fit its size, and draws them again when the size changes."""
 
     def __init__(self, *, id: str | None = None) -> None:
         super().__init__(id=id)
@@ -81,7 +78,6 @@ class DrawnRows(Scrolled, can_focus=False):
         return self._drawn[1]
 
     def render_line(self, y: int) -> Strip:
-        """Return a line of the screen."""
         rows, number, left = self.drawn(), y + self.scroll_offset.y, self.scroll_offset.x
         width, style = self.scrollable_content_region.width, self.rich_style
         strip = Strip(rows[number] if number < len(rows) else []).apply_style(style)
@@ -89,7 +85,7 @@ class DrawnRows(Scrolled, can_focus=False):
 
 
 class ScrolledText(DrawnRows):
-    """Texts one below the other, wrapped to the width of the widget."""
+    """Widget that shows texts below each other, wrapped to its width."""
 
     DEFAULT_CSS = "ScrolledText { overflow-x: hidden; scrollbar-size-vertical: 1; }"
 
@@ -106,18 +102,15 @@ class ScrolledText(DrawnRows):
         self.drawn()
 
     def on_resize(self) -> None:
-        """Wrap the texts to the new width."""
         self.drawn()
 
     def rows_for(self, size: Size) -> list[Row]:
-        """Wrap the texts."""
         wrapped = self._wrapped(size.width)
         self._numbers = [number for number, _ in wrapped]
         self.virtual_size = Size(size.width, len(wrapped))
         return [row for _, row in wrapped]
 
     def _wrapped(self, width: int) -> list[tuple[int, Row]]:
-        """Return the wrapped rows, each with the index of its text."""
         console = self.app.console
         options = console.options.update(width=width, height=None)
         return [
@@ -238,21 +231,17 @@ class TableCells(Scrolled, inherit_bindings=False):
             self.refresh_rows(*changed)
 
     def validate_cursor(self, cursor: int) -> int:
-        """Limit the cursor to existing rows."""
         return max(0, min(cursor, len(self.rows) - 1))
 
     def validate_column(self, column: int) -> int:
-        """Limit the cursor to the editable columns."""
         return max(0, min(column, len(self.editable) - 1))
 
     def watch_cursor(self, before: int, now: int) -> None:
-        """Keep the cursor visible."""
         if not self.follow():
             self.refresh_rows(before, now)
         self.post_message(self.Moved())
 
     def watch_column(self) -> None:
-        """Draw the cursor in its new column."""
         self.refresh_rows(self.cursor)
         self.post_message(self.Moved())
 
@@ -283,13 +272,9 @@ class TableCells(Scrolled, inherit_bindings=False):
         y = self.cursor + self.HEADING - self.scroll_offset.y
         return Region(column.start, y, column.width, 1)
 
+    # reacts to the press of the mouse button, not to the release: the layout may change between the
+    # two when text typed elsewhere is accepted
     def on_mouse_down(self, event: events.MouseDown) -> None:
-        """Move the cursor to the cell under the mouse.
-
-        If the cursor is already in this cell, post `Pressed`. The table reacts to the press of the
-        mouse button, not to the release, because the layout may change between the two when text
-        typed elsewhere is accepted.
-        """
         place = event.get_content_offset(self)
         number = None if place is None else self.row_at(place.y)
         if place is None or number is None:
@@ -305,7 +290,6 @@ class TableCells(Scrolled, inherit_bindings=False):
     # drawing
 
     def render_line(self, y: int) -> Strip:
-        """Return a line of the screen."""
         width, number = self.scrollable_content_region.width, self.row_at(y)
         ground = self.rich_style
         if y == 0:

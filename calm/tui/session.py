@@ -29,7 +29,7 @@ class Session:
     ----------
     catalogs : catalogue files given on the command line
     copied : text of the copied items or clamps
-    standing : the chosen environment
+    standing : choice of the environment in which the line is solved
     after_save : function called with the path and text of a saved file
     added : rows added by the last change
     followed : messages about the references to labels that were updated in the last change
@@ -108,9 +108,9 @@ class Session:
     def _edit(
         self, draft: Draft, label: str, *, removed: Iterable[Place] = (), new: Iterable[Place] = ()
     ) -> None:
-        """Make a draft the current one, and update references to labels.
+        """Make a draft the current draft, and update its references to labels.
 
-        References to `removed` rows are updated to `new` rows.
+        References to the `removed` rows then refer to the `new` rows, in line order.
         """
         removed, new, then = list(removed), set(new), _rows_of(draft, 0, len(draft.items))
         pairs = zip(
@@ -153,7 +153,7 @@ class Session:
         """Set keys of rows, in one step of the history; None deletes a key."""
         draft = self.draft
         for spot, values in given.items():
-            rows, index = _listed(spot)
+            rows, index = _list_and_index(spot)
             for key, value in values.items():
                 draft = draft.put(index, key, value, rows)
         self._edit(draft, label)
@@ -209,10 +209,11 @@ class Session:
             self._edit(draft, label, new=_rows_of(draft, items[-1] + 1, len(copies)))
             return Place(items[-1] + 1)
         last, clamps = chosen[-1], self._clamps(chosen) * times
-        return self._put_clamps(last, last.clamp + 1, clamps, label)[0]
+        return self._paste_clamps(last, last.clamp + 1, clamps, label)[0]
 
-    def _put_clamps(self, spot: Place, first: int, texts: Sequence[str], label: str) -> list[Place]:
-        """Insert clamps on a piece at index `first` of its clamps, and return their rows."""
+    def _paste_clamps(
+        self, spot: Place, first: int, texts: Sequence[str], label: str
+    ) -> list[Place]:
         new = [Place(spot.item, clamp=first + each) for each in range(len(texts))]
         self._edit(self.draft.paste(first, texts, clamps_of(spot.item)), label, new=new)
         return new
@@ -228,12 +229,12 @@ class Session:
         first, last, draft = moved[0], moved[-1], self.draft
         if first.is_clamp and first != last:
             return tuple(moved)
-        rows, top = _listed(first)
-        bottom = _listed(last)[1]
+        rows, top = _list_and_index(first)
+        bottom = _list_and_index(last)[1]
         held = draft.items[first.item].clamps if first.is_clamp else draft.items
         if top + by < 0 or bottom + by >= len(held):
             return tuple(moved)
-        for _, index in sorted(map(_listed, moved), reverse=by > 0):
+        for _, index in sorted(map(_list_and_index, moved), reverse=by > 0):
             draft = draft.move(index, index + by, rows)
 
         def there(spot: Place) -> Place:
@@ -271,7 +272,7 @@ class Session:
         if not self.copied or spot is None:
             return None
         first = spot.clamp + below if spot.is_clamp else len(self.draft.items[spot.item].clamps)
-        return self._put_clamps(spot, first, self.copied, label)[-1 if below else 0]
+        return self._paste_clamps(spot, first, self.copied, label)[-1 if below else 0]
 
     def _clamps(self, chosen: Sequence[Place]) -> tuple[str, ...]:
         copied = (self.draft.copy([spot.clamp], clamps_of(spot.item)) for spot in chosen)
@@ -298,7 +299,7 @@ class Session:
         return lost
 
     def save_as(self, path: Path) -> str:
-        """Save to another path, continue with this file, and return the same note as `save`."""
+        """Save to another path, which is edited from then on; return the same note as `save`."""
         before, self.file = self.file, WorkingFile(path)
         try:
             lost = self.save()
@@ -311,7 +312,7 @@ class Session:
     # backup in case of a crash
 
     def note_unsaved(self) -> WorkingFile:
-        """Pass the unsaved text to the working file for its next backup copy; return the file."""
+        """Pass unsaved text to the working file for its next backup copy, and return the file."""
         self.file.unsaved = self.draft.text if self.changed else None
         return self.file
 
@@ -338,12 +339,11 @@ def _whole(spots: Iterable[Place]) -> list[Place]:
 
 def location(spot: Place) -> Location:
     """Return the location of a row in the file, as a path of keys and indices."""
-    rows, index = _listed(spot)
+    rows, index = _list_and_index(spot)
     return (*rows, index)
 
 
-def _listed(spot: Place) -> tuple[Location, int]:
-    """Return the location of the list that contains a row, and the index in this list."""
+def _list_and_index(spot: Place) -> tuple[Location, int]:
     return (clamps_of(spot.item), spot.clamp) if spot.is_clamp else (LINE, spot.item)
 
 

@@ -54,7 +54,7 @@ def open_session(
 
 
 def _refuse_other_files(session: Session) -> None:
-    """Raise an exception for mistakes in other files, which the builder cannot correct."""
+    """Raise an exception for mistakes in other files, which the builder cannot edit."""
     Catalogue.load(session.catalogs)
     here, names = session.standing.environment, session.standing.environments
     if (lost := session.standing.lost_environment) is not None:
@@ -104,8 +104,8 @@ def build(path: Path | None, environment: str | None = None, catalogs: Sequence[
 def end(app: BuildApp, number: int, _frame: object) -> None:
     """Keep unsaved work and quit, after a signal that ends the terminal or the process.
 
-    The function does not wait for the event loop, which may wait forever for a closed terminal. If
-    the terminal is closed, it need not be restored, so the process ends at once.
+    The function does not wait for the event loop, which may wait forever for a closed terminal. A
+    closed terminal need not be restored, so the process then ends at once.
     """
     try:
         app.take_typed()

@@ -41,7 +41,7 @@ class GridCells(TableCells, can_focus=True):
 
     @property
     def columns(self) -> list[TableColumn]:
-        """Columns, which are named by numbers because several headings may be equal."""
+        """Columns of the table; their names are numbers, because several headings may be equal."""
         return [*self._columns()] or [TableColumn("", _AS_TEXT, _LEAD, len(_AS_TEXT))]
 
     def _columns(self) -> Iterator[TableColumn]:
@@ -63,7 +63,6 @@ class GridCells(TableCells, can_focus=True):
         return [str(number) for number in range(len(self.headings))]
 
     def text_of(self, number: int, column: TableColumn) -> str:
-        """Return the text of a cell."""
         return self.rows[number][int(column.name)]
 
     def lead(self, number: int, style: Style) -> list[Segment]:
@@ -107,7 +106,10 @@ class Grid(cell_editor.EditableTable):
     """
     LEAST_ROWS: ClassVar[int] = 0
     EDITS_ON: ClassVar[bool] = True
-    """Whether Enter edits the next value of an added row; used if digits do not start editing."""
+    """Whether Enter opens the next cell of an added row.
+
+    Tables of numbers do not need this, because a typed digit opens the cell.
+    """
 
     def __init__(
         self,
@@ -152,11 +154,9 @@ class Grid(cell_editor.EditableTable):
     # keys
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Disable all actions while a value is typed."""
         return not self.editor.is_open
 
     def action_move_row(self, by: int) -> None:
-        """Move to the row above or below; beyond the first or last row, leave the table."""
         if 0 <= self.cells.cursor + by < len(self.cells.rows):
             self.cells.cursor += by
         elif by > 0:
@@ -165,7 +165,6 @@ class Grid(cell_editor.EditableTable):
             self.screen.focus_previous()
 
     def action_move_cell(self, by: int) -> None:
-        """Move to the next or previous value; after the last value the table keeps the focus."""
         has_rows = bool(self.cells.headings) and bool(self.cells.rows)
         if has_rows and self.cells.go_on(by):
             return
@@ -177,19 +176,16 @@ class Grid(cell_editor.EditableTable):
             self.screen.focus_next()
 
     def on_key(self, event: events.Key) -> None:
-        """Start editing when a digit, a sign or a decimal point is typed."""
         if event.character in _DIGITS and event.is_printable and self.cells.rows:
             event.stop()
             self._edit(event.character)
 
     @on(GridCells.Pressed)
     def action_edit(self) -> None:
-        """Edit the cell under the cursor."""
         if self.cells.rows:
             self._edit()
 
     def _edit(self, begun: str | None = None) -> None:
-        """Edit the cell under the cursor, beginning with its text or the typed text `begun`."""
         cells = self.cells
         if not super().settle():  # settles the cell only, as the row may be incomplete
             return
@@ -198,7 +194,6 @@ class Grid(cell_editor.EditableTable):
         self.open_editor(text, check, least_width=12, begun=begun is not None)
 
     def action_add_row(self, below: int) -> None:
-        """Add a row above or below the cursor."""
         cells, rows = self.cells, self.cells.rows
         if not cells.headings:
             return
@@ -210,7 +205,6 @@ class Grid(cell_editor.EditableTable):
         self._edit()
 
     def action_drop_row(self) -> None:
-        """Delete the row under the cursor."""
         rows, here = self.cells.rows, self.cells.cursor
         if len(rows) > self.LEAST_ROWS:
             self.change((*rows[:here], *rows[here + 1 :]), "delete a row")
@@ -251,7 +245,6 @@ class Grid(cell_editor.EditableTable):
     # pasted text
 
     def on_paste(self, event: events.Paste) -> None:
-        """Replace all rows by pasted rows."""
         event.stop()
         self.take_text(event.text)
 
@@ -277,7 +270,7 @@ class Grid(cell_editor.EditableTable):
 
 
 class TableField(Grid):
-    """Table as a part of a form."""
+    """Table that is a field of a form."""
 
     def __init__(self, form_field: FormField, tell: Callable[..., object]) -> None:
         super().__init__(tell, lambda *_: None)

@@ -23,21 +23,17 @@ class YamlArea(TextArea):
     BINDINGS = key_table.bindings("area")
 
     def action_indent(self) -> None:
-        """Insert blanks up to the next even column."""
         _, column = self.cursor_location
         self.insert(" " * (_INDENT - column % _INDENT))
 
     def action_end(self, direction: int) -> None:
-        """Go to the beginning or the end of the text."""
         self.move_cursor(self.document.end if direction > 0 else (0, 0))
 
     def undo(self) -> None:
-        """Undo the last typing."""
         super().undo()
         self._wrap()
 
     def redo(self) -> None:
-        """Redo the last undone typing."""
         super().redo()
         self._wrap()
 
@@ -75,24 +71,22 @@ class TextScreen(screen.DraftScreen):
         self._edited = False
 
     def parts(self) -> ComposeResult:
-        """Yield the text editor and the list of mistakes."""
         yield self.text_area
         with VerticalScroll(id="mistakes", can_focus=False):
             yield Static(id="mistakes-text")
 
     def on_mount(self) -> None:
-        """Put the cursor on the first mistake, or else on the row selected on the main screen."""
         self.query_one(screen.KeyBar).show_keys(key_table.hints("text"))
         self.show_view()
         self.text_area.focus()
-        if self._here:
+        if self._own_problems:
             self.action_next_problem()
         else:
             row = _row(self.session.draft.text, self._line)
             self.text_area.move_cursor((row, 0), center=True)
 
     def show_view(self) -> None:
-        """List the mistakes that a worker has found."""
+        """List the mistakes in the text, or the missing parts of the line."""
         view, draft = self.workspace.view, self.session.draft
         known = self.workspace.is_fresh
         self._problems = tuple(draft.problems) or (view.problems if known and view else ())
@@ -105,12 +99,10 @@ class TextScreen(screen.DraftScreen):
         self.show_title()
 
     def titles(self) -> tuple[str, str]:
-        """Return the title, and the number of mistakes."""
         return f"The text of {self.workspace.called}", mistakes(self._problems, self.workspace.path)
 
     @property
-    def _here(self) -> list[Problem]:
-        """Mistakes in the edited file."""
+    def _own_problems(self) -> list[Problem]:
         return [each for each in self._problems if not is_elsewhere(each, self.workspace.path)]
 
     @on(TextArea.Changed)
@@ -123,7 +115,6 @@ class TextScreen(screen.DraftScreen):
             self.workspace.edited()
 
     def settle(self) -> bool:
-        """Accept the current text."""
         self._take()
         return True
 
@@ -167,10 +158,9 @@ class TextScreen(screen.DraftScreen):
         self.workspace.tell(f"{self._search_text}: not found", wrong=True)
 
     def action_next_problem(self) -> None:
-        """Put the cursor on the next mistake."""
-        if self._problems and not self._here:
+        if self._problems and not self._own_problems:
             self.workspace.tell(f"{self.session.name} itself has no mistakes")
-        placed = [each for each in self._here if each.line]
+        placed = [each for each in self._own_problems if each.line]
         if placed:
             problem = placed[self._next % len(placed)]
             self._next += 1
@@ -179,17 +169,14 @@ class TextScreen(screen.DraftScreen):
             self.text_area.move_cursor((min(row, last), max(problem.column - 1, 0)))
 
     def action_find(self) -> None:
-        """Ask for search words, and go to the first match."""
         fields = [forms.FormField("words", "Find", placeholder="a label, a key, a number")]
         text, app = "F3 goes to the next match.", self.app
         dialogs.enter(app, "Find in the text", text, fields, lambda it: self.find(it["words"]))
 
     def action_find_next(self) -> None:
-        """Go to the next match."""
         self.find()
 
     def action_back(self) -> None:
-        """Return to the line if the text is valid."""
         if self.session.draft.problems:
             self.tell("Correct the text first: it is not valid", wrong=True)
         else:
@@ -197,6 +184,9 @@ class TextScreen(screen.DraftScreen):
 
 
 def _row(text: str, line: int) -> int:
-    """Convert a line number of the file to a row of the editor, which breaks at more characters."""
+    """Convert a line number of the file to a row of the editor.
+
+    The numbers may differ, because the editor breaks lines at more characters.
+    """
     ends = [0, *(found.end() for found in _LINE_BREAK.finditer(text))]
     return len(text[: ends[min(line, len(ends)) - 1]].splitlines())

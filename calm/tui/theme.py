@@ -112,11 +112,12 @@ class Legible(LineFilter):
         self._dark, self._sixteen = dark, sixteen
 
     def apply(self, segments: list[Segment], background: Color) -> list[Segment]:
-        """Return text segments with legible colours."""
         ground = background.rich_color
 
         def style(given: Style) -> Style:
-            return _of_sixteen(given, self._dark) if self._sixteen else _apart(given, ground)
+            return (
+                _of_sixteen(given, self._dark) if self._sixteen else _with_contrast(given, ground)
+            )
 
         return [
             each
@@ -137,10 +138,7 @@ def legible(dark: bool, sixteen: bool) -> Legible:
 
 @lru_cache(1024)
 def _of_sixteen(style: Style, dark: bool) -> Style:
-    """Convert a style to the terminal's own colours, without dimming.
-
-    Backgrounds become reverse video.
-    """
+    """Convert a style to the terminal's own colours; a background becomes reverse video."""
     ink = style.color or _OWN
     if style.bgcolor is not None and not style.bgcolor.is_default:
         return style + Style(color=_OWN, bgcolor=_OWN, reverse=True, dim=False)
@@ -149,8 +147,7 @@ def _of_sixteen(style: Style, dark: bool) -> Style:
 
 
 @lru_cache(4096)
-def _apart(style: Style, ground: Ink) -> Style:
-    """Return a style whose text colour has enough contrast with the background."""
+def _with_contrast(style: Style, ground: Ink) -> Style:
     on, ink = (style.bgcolor or ground).triplet, style.color and style.color.triplet
     if on is None or ink is None or _is_legible(ink, on):
         return style
@@ -191,7 +188,7 @@ LOOKS = {
     State.NOT_JUDGED: "dim",
     State.PASS: "green",
 }
-"""Rich styles of the signs for states."""
+"""Rich style of the sign for each state."""
 
 ROLES = {
     "float": "o",

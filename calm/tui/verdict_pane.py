@@ -51,7 +51,7 @@ class VerdictPane(scrolled.ScrolledText, can_focus=True):
 
     def say(self, view: View | None, note: str = "") -> None:
         """Show the verdict of a view, followed by a note."""
-        parts = [*_parts(view, note)]
+        parts = [*_rendered_lines(view, note)]
         self._lines, self._texts = [each for each, _ in parts], [text for _, text in parts]
         self._chosen = min(self._chosen, len(self._lines) - 1)
         before = len(self._numbers)
@@ -61,24 +61,20 @@ class VerdictPane(scrolled.ScrolledText, can_focus=True):
             self.refresh(layout=True)
 
     def get_content_height(self, container: Size, viewport: Size, width: int) -> int:
-        """Return the number of lines."""
         size, rows = self._drawn
         return len(rows if size and size.width == width else self._wrapped(width))
 
     def render_line(self, y: int) -> Strip:
-        """Return a line of the screen."""
         strip, at = super().render_line(y), y + self.scroll_offset.y
         if self.has_focus and self._numbers[at : at + 1] == [self._chosen]:
             return Strip(Segment(text, style and style + _CHOSEN) for text, style, _ in strip)
         return strip
 
     def on_focus(self) -> None:
-        """Select the first line that links to a row."""
         if not self._is_choosable(self._chosen):
             self.action_move(1)
 
     def action_move(self, by: int) -> None:
-        """Move to the next line that links to a row; if there is none, scroll."""
         number = self._chosen + by
         while 0 <= number < len(self._lines) and not self._is_choosable(number):
             number += by
@@ -90,18 +86,15 @@ class VerdictPane(scrolled.ScrolledText, can_focus=True):
             self.scroll_relative(y=by, animate=False)
 
     def action_go(self) -> None:
-        """Go to the row that the selected line links to."""
         if self._is_choosable(self._chosen):
             line = self._lines[self._chosen]
             text = f"{line.sign} {line.heading}: ".replace(" : ", " ") + line.text
             self._go_to(line.places, text)
 
     def action_leave(self) -> None:
-        """Return to the line table."""
         self._go_to(())
 
     def on_click(self, event: events.Click) -> None:
-        """Go to the row that the clicked line links to."""
         place = event.get_content_offset(self)
         at = len(self._numbers) if place is None else place.y + self.scroll_offset.y
         if at < len(self._numbers) and self._is_choosable(self._numbers[at]):
@@ -118,8 +111,7 @@ class VerdictPane(scrolled.ScrolledText, can_focus=True):
             self.scroll_to(y=min(own[0], max(own[-1] - height + 1, 0)), animate=False)
 
 
-def _parts(view: View | None, note: str) -> Iterator[tuple[VerdictLine, RenderableType]]:
-    """Yield the lines of the verdict, each with its rendering."""
+def _rendered_lines(view: View | None, note: str) -> Iterator[tuple[VerdictLine, RenderableType]]:
     head = headline(view)
     style = "dim" if head.state is None else theme.LOOKS[head.state]
     yield head, Text(f"{head.sign} {head.text}", style=f"{style} bold")

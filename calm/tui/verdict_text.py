@@ -96,21 +96,20 @@ def verdict_lines(view: View | None) -> Iterator[VerdictLine]:
     if view.failure is not None:
         yield VerdictLine(view.failure.message, state=State.FAIL)
         yield VerdictLine(view.failure.advice, faint=True)
-    findings = [_placed(each, view) for each in view.findings]
-    tighter = [_placed(each, view) for each in view.tighter]
-    yield from _figures(view, [*findings, *tighter], pending=not view.complete)
+    findings = [_with_environment(each, view) for each in view.findings]
+    tighter = [_with_environment(each, view) for each in view.tighter]
+    yield from _values_at_ends(view, [*findings, *tighter], pending=not view.complete)
     for problem in view.elsewhere:
         yield VerdictLine(problem.message, place_of(problem, view.path), State.FAIL)
     if len(view.cases) > 1:
         yield from (_environment_line(case, view) for case in view.cases)
-    yield from _found(findings, tighter, pending=not view.complete)
+    yield from _finding_lines(findings, tighter, pending=not view.complete)
     if view.result is not None:
         for text in view.result.warnings:
             yield VerdictLine(text, state=State.WARN)
 
 
-def _placed(finding: Finding, view: View) -> Finding:
-    """Add the environment to the situation of a finding, unless it is the current environment."""
+def _with_environment(finding: Finding, view: View) -> Finding:
     if finding.environment == view.here:
         return finding
     there = _environment(finding.environment)
@@ -135,15 +134,16 @@ def _environment_line(case: MooringInEnvironment, view: View) -> VerdictLine:
     )
 
 
-def _figures(view: View, findings: Sequence[Finding], *, pending: bool) -> Iterator[VerdictLine]:
-    """Yield values at the ends of the line, if it has a solution."""
+def _values_at_ends(
+    view: View, findings: Sequence[Finding], *, pending: bool
+) -> Iterator[VerdictLine]:
     result = view.result
     if result is None:
         return
     if result.several:
-        yield from _net(result)
+        yield from _values_of_net(result)
     elif not result.towed:
-        yield from _mooring(result.leg, findings, pending, view.held)
+        yield from _values_of_mooring(result.leg, findings, pending, view.held)
     else:
         point, body = result.tow_point, result.body
         pull = f"{say('tension', point.tension)}, {say('angle', point.angle)} below the horizontal"
@@ -152,12 +152,12 @@ def _figures(view: View, findings: Sequence[Finding], *, pending: bool) -> Itera
         yield VerdictLine(behind, "Body")
 
 
-def _mooring(
+def _values_of_mooring(
     result: LegResult, findings: Sequence[Finding], pending: bool, held: Sequence[HeldLine]
 ) -> Iterator[VerdictLine]:
     """Yield values at the anchor and the top of the mooring as given.
 
-    A value with a limit is followed by its most severe finding.
+    A value with a limit is followed by the value in its worst situation.
     """
     from calm.checks.posture import knockdown, reserve
     from calm.checks.strength import anchor_weight
@@ -165,34 +165,34 @@ def _mooring(
     anchor, top = result.anchor_load, result.top
     pull = f"{say('tension', anchor.tension)}, {say('angle', anchor.angle)} off the vertical"
     yield VerdictLine(pull, heading="Anchor")
-    yield _holds(result, _worst(findings, anchor_weight), pending, held)
+    yield _anchor_weight_line(result, _worst(findings, anchor_weight), pending, held)
     if result.type == "surface":
         used = f"{top.used_buoyancy:.0%} of the float's buoyancy in use"
         worst = _worst(findings, reserve)
         if worst is not None and worst.value is not None:
             used += _at_worst(worst, f"{1.0 - worst.value:.0%}")
         text = f"{say('reserve', top.reserve)}; {used}"
-        yield _figure(text, "Reserve", worst)
+        yield _value_line(text, "Reserve", worst)
     else:
         depth = f"top at {say('depth', top.depth)}"
         worst = _worst(findings, knockdown)
         if worst is not None:
             depth += _at_worst(worst, say("knockdown", worst.value))
         text = f"{say('knockdown', top.knockdown)}, {depth}"
-        yield _figure(text, "Knockdown", worst)
+        yield _value_line(text, "Knockdown", worst)
     if anchor.grounded_length > 0.0:
         yield VerdictLine(
             f"{say('grounded_length', anchor.grounded_length)} of line", heading="On seabed"
         )
 
 
-def _holds(
+def _anchor_weight_line(
     result: LegResult, worst: Finding | None, pending: bool, held: Sequence[HeldLine]
 ) -> VerdictLine:
     """Return the verdict line on the required and the actual anchor weight.
 
-    If the line has no anchor, the verdict line gives only the required weight. This weight is the
-    largest of all situations, once all situations are solved.
+    Without an anchor, only the required weight is given: the maximum over all situations, once
+    they are solved.
     """
     if worst is None:
         needed, when = result.anchor_load.required_weight, ""
@@ -209,16 +209,11 @@ def _holds(
 
 
 def _worst(findings: Sequence[Finding], rule: Rule) -> Finding | None:
-    """Return the most severe finding of a rule, by state and then by utilisation, or None."""
     own = [each for each in findings if each.rule == rule.name]
     return min(own, key=lambda each: each.rank, default=None)
 
 
 def _at_worst(worst: Finding, figure: str) -> str:
-    """Return the text for a value in the situation of the most severe finding.
-
-    The text is "" if that situation is the mooring as given.
-    """
     return "" if worst.situation == AS_GIVEN else f"; {figure} at worst{_situation(worst)}"
 
 
@@ -226,13 +221,12 @@ def _situation(finding: Finding) -> str:
     return "" if finding.situation == AS_GIVEN else f" ({finding.situation})"
 
 
-def _figure(text: str, heading: str, worst: Finding | None) -> VerdictLine:
-    """Return a line with a value, in the state of its finding if it fails or warns."""
+def _value_line(text: str, heading: str, worst: Finding | None) -> VerdictLine:
     state = worst.state if worst is not None and _graver(worst) else None
     return VerdictLine(text, heading, state, places=_places([worst]))
 
 
-def _net(result: Result) -> Iterator[VerdictLine]:
+def _values_of_net(result: Result) -> Iterator[VerdictLine]:
     for end in (*result.anchors, *result.held):
         needs = end.required_weight
         needed = "" if needs is None else f", needs {say('required_weight', needs)} in water"
@@ -242,12 +236,12 @@ def _net(result: Result) -> Iterator[VerdictLine]:
         yield VerdictLine(f"{say('depth', node.depth)} deep", f"Node {node.name}")
 
 
-def _found(
+def _finding_lines(
     findings: Sequence[Finding], tighter: Sequence[Finding], *, pending: bool
 ) -> Iterator[VerdictLine]:
     """Yield failures and warnings with reason and remedy, then summaries of unknowns and passes.
 
-    A rule passes if every component passes. If a value is missing, the state is unknown.
+    A rule is listed as passed if every component passes.
     """
     from calm.checks.finding import governing
     from calm.report.check_tables import named, named_components
@@ -296,7 +290,7 @@ def _used(finding: Finding) -> str:
 
 def why(view: View, row: Place) -> list[VerdictLine]:
     """Return all findings on a row with their remedies, the most severe first."""
-    found = [_placed(each, view) for each in (*view.findings, *view.tighter)]
+    found = [_with_environment(each, view) for each in (*view.findings, *view.tighter)]
     own = [each for each in found if row in _places([each])]
     return [_finding_line(each) for each in sorted(own, key=lambda each: each.rank)]
 

@@ -93,7 +93,7 @@ class WaterForm:
     @property
     def depth(self) -> float | None:
         """Water depth [m]; None if the depth is not set or not positive."""
-        return _read(POSITIVE_LENGTH, self.text("depth"))
+        return _si_value(POSITIVE_LENGTH, self.text("depth"))
 
     def form(self, *keys: str) -> str:
         """Return the form in which a property is given, such as ``constant`` or ``table``.
@@ -140,17 +140,17 @@ class WaterForm:
     def put_rows(
         self, keys: Sequence[str], columns: Iterable[str], rows: Iterable[Sequence[str]]
     ) -> Draft:
-        """Write a table to the file; unchanged rows keep their text."""
+        """Write a table to the file. Unchanged rows keep their text."""
         names = [*columns]
         given = self.value(*keys)
         old = given.get("rows") if isinstance(given, dict) and self.table(*keys)[0] else None
         known = dict(zip(self.table(*keys)[1], old or (), strict=False))
         new = [known.get(tuple(row), [text or None for text in row]) for row in rows]
-        return self._with_own(keys).put_table(self.at(*keys), names, new)
+        return self._with_inherited_value(keys).put_table(self.at(*keys), names, new)
 
     def put_form(self, keys: Sequence[str], value: Value | None) -> Draft:
         """Replace the value of a property, such as the current; None deletes the property."""
-        return self._with_own(keys).put_at(self.at(*keys), value)
+        return self._with_inherited_value(keys).put_at(self.at(*keys), value)
 
     def begun(self, keys: Place, form: str) -> Value | None:
         """Return the initial value of a property in a new form, from known or typical values.
@@ -160,7 +160,7 @@ class WaterForm:
         if keys == ("current",):
             return self._begun_current(form)
         kind, unit, usual = _CONSTANTS[keys]
-        known = _read(kind, self.text(*keys))
+        known = _si_value(kind, self.text(*keys))
         figure = usual if known is None else f"{known:g}"
         if form == "table":
             columns = ["depth m", f"{keys[-1]} {unit}".rstrip()]
@@ -170,17 +170,19 @@ class WaterForm:
         return {name[-1]: self.begun(name, "constant") for name in _CONSTANTS if len(name) > 1}
 
     def _begun_current(self, form: str) -> Value | None:
-        """Return the initial current for another form.
+        """Return the initial current in another form.
 
-        The initial current is based on the uniform current, or on the first row of the table.
+        The values are taken from the uniform current or from the first row of the table.
         """
         place = {name: self.text("current", name) for name in ("speed", "toward")}
         columns, rows = self.table("current")
         for column, text in zip(columns, rows[0] if rows else (), strict=False):
             name, unit = headings.heading(column)
             place[name] = f"{text} {unit}".strip()
-        found = [_read(QuantityField("speed"), place.get(name, "")) for name in ("speed", "u", "v")]
-        flow = found[0], _read(QuantityField("angle"), place["toward"])
+        found = [
+            _si_value(QuantityField("speed"), place.get(name, "")) for name in ("speed", "u", "v")
+        ]
+        flow = found[0], _si_value(QuantityField("angle"), place["toward"])
         if found[1] is not None and found[2] is not None:
             flow = profile_tables.speed_and_direction(found[1], found[2])
         known = [f"{each:g}" for each in flow if each is not None]
@@ -197,20 +199,15 @@ class WaterForm:
     def _down_to(self) -> str:
         return f"{self.depth or water_tables.USUAL_DEPTH:g}"
 
-    def _with_own(self, keys: Sequence[str]) -> Draft:
-        """Return the draft with a value copied from the default environment, if it is needed.
-
-        The copy is needed because a key of a named environment replaces the whole value of the
-        default environment.
-        """
+    def _with_inherited_value(self, keys: Sequence[str]) -> Draft:
         inherited = self.value(keys[0])
         if len(keys) == 1 or self.is_own(keys[0]) or not isinstance(inherited, dict):
             return self.draft
+        # a key of a named environment replaces the whole value of the default environment
         return self.draft.put_at(self.at(keys[0]), inherited)
 
 
-def _read(kind: QuantityRange, text: str) -> float | None:
-    """Parse a quantity to SI units; None if it is invalid."""
+def _si_value(kind: QuantityRange, text: str) -> float | None:
     try:
         return kind.read(text) if text else None
     except QuantityError:
@@ -224,7 +221,7 @@ class FormChoice(Cycle):
     """Selector of the form in which a water property is given.
 
     The arrows show other forms, and Enter accepts the form shown. If the focus leaves without
-    Enter, the current form is shown again.
+    Enter, the form in the draft is shown again.
     """
 
     BINDINGS = key_table.bindings("given")
@@ -241,16 +238,14 @@ class FormChoice(Cycle):
         self._given = forms[0]
 
     def show(self, word: str) -> None:
-        """Show the current form."""
+        """Show the form in the draft."""
         self._given = word
         super().show(word)
 
     def action_turn(self, by: int) -> None:
-        """Show the next form."""
         super().show(self.next_word(by))
 
     def action_take(self) -> None:
-        """Accept the form shown; if it is the current form, move to the next field instead."""
         if self.word != self._given:
             self.post_message(self.Taken(self, self.word))
         else:
@@ -258,15 +253,14 @@ class FormChoice(Cycle):
 
     @on(events.Click)
     def _press(self, event: events.Click) -> None:
-        """Show the next form on a mouse press, or accept the form on a press on the hint."""
         event.prevent_default()
+        # a press on the hint accepts
         if self.word != self._given and event.x >= self.render().cell_len - len(_ACCEPT_HINT):
             self.action_take()
         else:
             self.action_turn(1)
 
     def on_blur(self) -> None:
-        """Show the current form again."""
         self.show(self._given)
 
     @property

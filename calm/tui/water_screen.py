@@ -48,7 +48,7 @@ _ELSEWHERE = (
 )
 _INHERITED = "as in the default environment"
 _FORMS: dict[type[Widget], str] = {FormChoice: "", Field: "constant", ProfileGrid: "table"}
-"""Input form that a part belongs to; "" for all forms."""
+"""Form of a property to which each type of widget belongs; "" for all forms."""
 
 
 class WaterScreen(screen.DraftScreen):
@@ -80,26 +80,26 @@ class WaterScreen(screen.DraftScreen):
         self._goes_on = False
 
     def parts(self) -> ComposeResult:
-        """Yield the form on the left and the current profile on the right."""
         with Horizontal():
             with VerticalScroll(id="water-form", can_focus=False):
                 yield Static(id="environment-names", markup=False)
                 yield Static(id="water-notes")
-                grid = partial(ProfileGrid, self.workspace.tell, self._take_rows, self._preview)
+                grid = partial(
+                    ProfileGrid, self.workspace.tell, self._take_rows, self._preview_paste
+                )
                 for part in fields_of_water(self.session.draft.is_tow, grid):
-                    part.set_class(self._is_gone(part), "gone", update=False)
+                    part.set_class(self._is_hidden(part), "gone", update=False)
                     yield part
             with Vertical(id="water-profile"):
                 yield pictures.ProfilePicture()
 
     def on_mount(self) -> None:
-        """Show the environment."""
         self.show_draft()
         self.query_one("#depth", Field).input.focus()
 
     @property
     def water(self) -> WaterForm:
-        """The displayed environment, as written in the current draft."""
+        """The displayed environment in the current draft."""
         standing = self.session.standing
         here = standing.environment
         return WaterForm(self.session.draft, here if here in standing.environments else None)
@@ -112,7 +112,6 @@ class WaterScreen(screen.DraftScreen):
         return None if here in standing.environments or draft.problems else here
 
     def titles(self) -> tuple[str, str]:
-        """Return the title, and the verdict in the environment shown."""
         state = verdict_pane.state_word(self.workspace.view, old=not self.workspace.is_fresh)
         return f"The water of {self.workspace.called}", state
 
@@ -144,11 +143,11 @@ class WaterScreen(screen.DraftScreen):
             f"Environment     {listing}", layout=False
         )
         for choice in self.query(FormChoice):
-            choice.set_class(self._is_gone(choice), "gone")
+            choice.set_class(self._is_hidden(choice), "gone")
             choice.show(water.form(*_place(choice)))
         for field in self.query(Field):
             place = _place(field)
-            field.set_class(self._is_gone(field), "gone")
+            field.set_class(self._is_hidden(field), "gone")
             if not field.is_typing:
                 field.reset(water.text(*place))
             is_lacking = field.form_field.is_needed and len(place) > 1 and water.value(*place[:-1])
@@ -156,11 +155,10 @@ class WaterScreen(screen.DraftScreen):
             note = f"is needed: {field.form_field.takes}" if lacks else ""
             field.tell(note if water.is_own(place[0]) else _INHERITED)
         for grid in self.query(ProfileGrid):
-            grid.set_class(self._is_gone(grid), "gone")
+            grid.set_class(self._is_hidden(grid), "gone")
             grid.show_profile(*water.table(*_place(grid)), water.depth)
 
-    def _is_gone(self, part: Widget) -> bool:
-        """Return whether a widget is hidden because its property is given in another form."""
+    def _is_hidden(self, part: Widget) -> bool:
         form = _FORMS.get(type(part))
         if form is None:
             return False
@@ -191,14 +189,13 @@ class WaterScreen(screen.DraftScreen):
         return is_made
 
     def put_table(self, columns: Sequence[str], rows: Sequence[Sequence[str]], label: str) -> None:
-        """Replace the water current in the environment by a table."""
+        """Replace the current of the displayed environment by a table."""
         self.change(lambda water: water.put_rows(("current",), columns, rows), label)
 
     # typed text
 
     @property
     def is_typing(self) -> bool:
-        """Whether the user has typed text that is not in the draft yet."""
         return any(part.is_typing for part in (*self.query(Field), *self.query(ProfileGrid)))
 
     def settle(self) -> bool:
@@ -245,8 +242,7 @@ class WaterScreen(screen.DraftScreen):
         place, cells = _place(grid), grid.cells
         self.change(lambda water: water.put_rows(place, cells.headings, cells.rows), label)
 
-    def _preview(self, grid: ProfileGrid, copied: CopiedTable, headings: list[str]) -> None:
-        """Show a preview of pasted rows, in which the column headings can be corrected."""
+    def _preview_paste(self, grid: ProfileGrid, copied: CopiedTable, headings: list[str]) -> None:
         columns = grid.cells.headings
 
         def taken(text: str) -> Rows:
@@ -272,7 +268,7 @@ class WaterScreen(screen.DraftScreen):
         dialogs.enter(self.app, "Paste a table", text, [form_field], take)
 
     def on_paste(self, event: events.Paste) -> None:
-        """Use a pasted table as current profile, unless another table of the form receives it."""
+        # a table of the form that has the focus takes its own pastes
         if len(event.text.splitlines()) > 1 and self.settle():
             grid = self.query_one("#current-table", ProfileGrid)
             if self.water.form("current") != "table":
@@ -281,7 +277,6 @@ class WaterScreen(screen.DraftScreen):
 
     @on(FormChoice.Taken)
     def _take_form(self, event: FormChoice.Taken) -> None:
-        """Change the form of a property, restoring the values that it had in this form before."""
         place, form, message = _place(event.choice), event.form, ""
         if form == "file":
             self.action_load_current()
@@ -299,15 +294,15 @@ class WaterScreen(screen.DraftScreen):
                 message += f"; the depth is not set, so tables go down to {USUAL_DEPTH:g} m"
         self.change(lambda water: water.put_form(place, value), f"{place[-1]}: {form}", message)
         self._goes_on = True
-        self.call_after_refresh(self._first_of(place, form).focus)
+        self.call_after_refresh(self._first_widget(place, form).focus)
 
-    def _first_of(self, place: Place, form: str) -> Widget:
-        """Return the first widget for a property in a given form, or the next widget below."""
+    def _first_widget(self, place: Place, form: str) -> Widget:
         key = "-".join(place)
         if form == "table":
             return self.query_one(f"#{key}-table GridCells")
         if form == DENSITY_FORMS[2]:
             return self.query_one("#density-temperature-form")
+        # still water has no widget: the wind is next
         where = {"uniform": "current-speed", "still": "wind-speed"}.get(form, key)
         return self.query_one(f"#{where}", Field).input
 
@@ -326,13 +321,10 @@ class WaterScreen(screen.DraftScreen):
         self._goes_on = False
 
     def action_next_environment(self) -> None:
-        """Show the next environment, and solve the line in this environment."""
         if self.settle():
             self._environment_file_in_use(self.session.standing.next_environment)
 
     def action_new_environment(self) -> None:
-        """Add a named environment with the same current as the displayed environment."""
-
         def take(texts: dict[str, str]) -> None:
             name, water = texts["name"], self.water
             if name in self.session.standing.environments:
@@ -356,7 +348,6 @@ class WaterScreen(screen.DraftScreen):
             dialogs.enter(self.app, "New environment", text, fields, take)
 
     def action_drop_environment(self) -> None:
-        """Delete the displayed named environment from the file."""
         name = self.water.variant
         if name is None:
             self.workspace.tell("The default environment cannot be removed; F5 shows a named one")
@@ -373,8 +364,6 @@ class WaterScreen(screen.DraftScreen):
         self.workspace.edited()
 
     def action_preset(self) -> None:
-        """Choose a typical current profile."""
-
         def take(speed: Callable[[float], float]) -> None:
             deep = self.water.depth or USUAL_DEPTH
             rows = [(f"{part * deep:.4g}", f"{speed(part):.2g}", "90") for part in SHARES]
@@ -390,11 +379,6 @@ class WaterScreen(screen.DraftScreen):
             dialogs.choose(self.app, dialogs.Question("A current to start from", text, answers))
 
     def action_load_current(self) -> None:
-        """Read a current profile from a CSV or NetCDF file.
-
-        The mooring file then refers to the file that was read, or contains a copy of the profile.
-        """
-
         def take(texts: dict[str, str] | None) -> None:
             if texts is None:
                 self.show_draft()
@@ -406,14 +390,13 @@ class WaterScreen(screen.DraftScreen):
                 self.change(lambda water: water.put_form(("current",), given), message)
             else:
                 self.workspace.tell(f"Reading {path} …")
-                read = partial(self._read, self.water, path, time)
+                read = partial(self._read_in_thread, self.water, path, time)
                 self.run_worker(read, thread=True, exit_on_error=False)
 
         if self.settle():
             self.app.push_screen(import_sheet(self._folder), take)
 
-    def _read(self, water: WaterForm, path: str, time: str) -> None:
-        """Read a current file in a thread, and write its profile to the form."""
+    def _read_in_thread(self, water: WaterForm, path: str, time: str) -> None:
         tell = self.workspace.tell
 
         def put(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
@@ -438,7 +421,6 @@ class WaterScreen(screen.DraftScreen):
         return Path.cwd() if path is None else path.absolute().parent
 
     def action_undo(self) -> None:
-        """Discard typed text if the text is invalid; otherwise undo the last change."""
         if self.settle():
             super().action_undo()
         else:
@@ -446,7 +428,6 @@ class WaterScreen(screen.DraftScreen):
             self.show_draft()
 
     def action_back(self) -> None:
-        """Return to the line; valid typed text is accepted, invalid text is discarded."""
         self.settle()
         self.dismiss()  # not awaited, because this ends the loop that would wait
 

@@ -135,7 +135,7 @@ class Workspace:
         return self.session.name + (" (not saved)" if self.session.changed else "")
 
     def attempt(self, change: Callable[[], object]) -> tuple[bool, Place | None]:
-        """Make a change; return whether the change succeeded, and the row that `change` returned.
+        """Make a change, and return its success and the row that `change` returned.
 
         If the change fails, a message shows the reason.
         """
@@ -218,8 +218,7 @@ class Judging:
             catalogs = self._workspace.session.catalogs
             self._work(lambda live: live.judge_fully(view, catalogs), fully=True)
 
-    def _take(self, view: View, fully: bool) -> None:
-        """Store and show a view from a worker; `fully` if it has all checks."""
+    def _take_view(self, view: View, fully: bool) -> None:
         workspace = self._workspace
         is_first, is_late = workspace.view is None, fully and self._checked is not workspace.view
         if fully:
@@ -252,7 +251,7 @@ class Judging:
             except Exception as error:
                 self._app.call_later(self._fail, f"{type(error).__name__}: {error}")
             else:
-                self._app.call_later(self._take, view, fully)
+                self._app.call_later(self._take_view, view, fully)
 
         self._app.run_worker(work, thread=True, group="judging", exit_on_error=False)
 
