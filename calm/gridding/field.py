@@ -153,7 +153,7 @@ def _local_line(weight: Floats, off: Floats, value: Floats, width: float) -> tup
 
 
 class _Block(NamedTuple):
-    """Observations (n, m) around each of n times: at the time itself and its neighbours."""
+    """Observations (n, m) around each of n times: at this time and at the neighbouring times."""
 
     depth: Floats
     anomaly: Floats
@@ -219,7 +219,7 @@ def _correlation(a: Floats, b: Floats, s: Floats, t: Floats, scales: Scales) -> 
 
 
 def posterior(field: GriddedQuantity, times: NDArray[np.int64], levels: Floats) -> LevelPosterior:
-    """Compute the posterior (n, k) at the depths `levels` (k,) or (n, k) [m] at n of the times."""
+    """Compute the posterior (n, k) at depths `levels` (k,) or (n, k) [m], for n indices `times`."""
     block = _block(field, times)
     level = np.broadcast_to(np.atleast_2d(levels), (len(times), np.atleast_2d(levels).shape[1]))
     spread = field.profile.deviation_at(level)

@@ -68,7 +68,7 @@ Weighed = list[tuple[Suspect, float]]
 
 
 def diagnosed(task: Task) -> tuple[Fault, ...]:
-    """Return the faults of the task, or else diagnose faults of sensors, currents and line."""
+    """Return the faults stored in the task, or else diagnose sensors, currents and line."""
     if task.faults is not None:
         return task.faults
     law, causes = law_near(task)

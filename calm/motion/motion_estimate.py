@@ -216,7 +216,6 @@ class RecoveredMooring:
             self.source["corrected"] = "corrected for: " + "; ".join(off)
 
     def _without(self, points: dict[int, int], labels: Sequence[str]) -> dict[int, int]:
-        """Return the points of the sensors that are not ignored."""
         known = [labels[at] for at in points.values()]
         for option, given in (("--without", self.without), ("--hold-out", self.hidden)):
             for label in given:

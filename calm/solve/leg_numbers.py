@@ -233,9 +233,9 @@ def end_height(leg: LegRow, lies: bool, pull: float) -> float:
     """Return the height of the lower end of an anchored leg [m].
 
     A leg on the seabed ends at the seabed; a leg that pulls upwards ends at the top of its anchor.
-    In between, the height is proportional to the pull, up to the weight of a line as long as the
-    anchor is high. The height therefore has no jump, and the solver need not guess where the leg
-    ends.
+    In between, the height is proportional to the pull, up to the weight of a line whose length
+    equals the height of the anchor. The height therefore has no jump, and the solver need not guess
+    where the leg ends.
 
     Parameters
     ----------

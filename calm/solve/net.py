@@ -349,7 +349,7 @@ class NearbyNet:
     def node(self, leg: int, piece: int, clamp: int = -1) -> int:
         """Return the number of the node at the top of a piece of a leg, or at a clamp.
 
-        All slightly different nets solved with this object have the same numbers.
+        All slightly different nets solved with this object have the same node numbers.
         """
         each, trace = self._net.laid[leg], self._net.shape(leg, self._x)
         if clamp >= 0:

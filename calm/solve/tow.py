@@ -185,7 +185,6 @@ class _Marches:
 
     @property
     def shape(self) -> Trace:
-        """Shape of the last march."""
         return self.net.shape(0, np.zeros(1))
 
     def miss(self, _: None, depth: float) -> float:
