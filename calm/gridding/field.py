@@ -1,10 +1,12 @@
 """Gaussian-process model of a quantity over depth and time, with scales fitted to the record.
 
 The field is a mean profile plus an anomaly, both estimated from the record. The standard deviation
-of the anomaly depends on depth. Its correlation is a Matérn function of order 3/2 along depth and
-an exponential function in time (Rasmussen and Williams, Gaussian Processes for Machine Learning,
-2006, eq. 4.17 and 4.18; mean and variance eq. 2.25 and 2.26). The uncorrelated part of the variance
-is due to scales below the sensor spacing, and to sensor noise.
+of the anomaly depends on depth. The correlation of the anomaly is a Matérn function of order 3/2
+along depth, and an exponential function in time. The uncorrelated part of the variance is due to
+scales below the sensor spacing, and to sensor noise.
+
+Source: Rasmussen and Williams, Gaussian Processes for Machine Learning, 2006, eq. 4.17 and 4.18 for
+the correlation, eq. 2.25 and 2.26 for the mean and variance.
 
 An error in the depth of an instrument causes an error in its values, which equals the depth error
 times the local gradient. This error is added to the standard deviation of the result without

@@ -139,7 +139,7 @@ class LinearLaw:
 
     @cached_property
     def weight(self) -> Floats:
-        """Weight (n,) of each time under Student's t distribution; low for a large misfit."""
+        """Weight (n,) of each time under Student's t distribution, low if the misfit is large."""
         misfit = np.einsum("ns,nst,nt->n", self.left, self.inverse, self.left)
         return np.asarray((ROBUST + self.known.sum(axis=1)) / (ROBUST + misfit))
 

@@ -174,7 +174,7 @@ class Diagnosis:
         return tuple(found)
 
     def weighed(self, taken: list[Suspect]) -> Weighed:
-        """Return every possible fault other than those in `taken`, with its log odds."""
+        """Return every possible fault that is not in `taken`, with its log odds."""
         result = []
         for suspect in self._suspects(taken, self.fitted(taken, None, 1.0)):
             alike = repeated(self.fitted(taken, suspect, 1.0).pulls)

@@ -2,11 +2,13 @@
 
 The unknowns at each time are the current at several depths (knots), the relative error in the
 knockdown of each stretch of the line, and the tide. The unknowns of the whole record are factors on
-the drag, the datum, and the offset of each sensor; steps in the datum and the offsets are rare. All
-priors are normal. Errors of meters and sensors follow Student's t distribution, represented by
-weights of the readings. The meter error for each quality flag and the error of the line are
-estimated by expectation and maximisation (Dempster, Laird and Rubin 1977). Gauss-Newton steps over
-the whole record use depths and derivatives from solutions of the line.
+the drag, the datum, and the offset of each sensor; steps in the datum and the offsets are rare. The
+priors are normal, except for the initial values of datum and places and for their steps. These and
+the errors of meters and sensors follow Student's t distribution, represented by weights of the
+readings and by updated variances of the unknowns. Expectation and maximisation (Dempster, Laird and
+Rubin 1977) estimate the meter error for each quality flag. Fisher scoring estimates the error share
+of each stretch. Gauss-Newton steps over the whole record use depths and derivatives from solutions
+of the line.
 """
 
 from __future__ import annotations

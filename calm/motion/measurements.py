@@ -100,7 +100,10 @@ def level_names(measured: MooringMeasurements, labels: Sequence[str]) -> tuple[s
 
 
 def nearest(time: Times, wanted: Times) -> Integers:
-    """Return the index (n,) of the time nearest to each wanted time; of two, the earlier time."""
+    """Return the index (n,) of the time nearest to each wanted time.
+
+    If two times are equally near, the earlier time is chosen.
+    """
     after = np.clip(np.searchsorted(time, wanted), 0, len(time) - 1)
     before = np.maximum(after - 1, 0)
     earlier = np.abs(wanted - time[before]) <= np.abs(time[after] - wanted)

@@ -210,12 +210,16 @@ def plausible(
 ) -> tuple[InstrumentSeries, list[str]]:
     """Remove implausible readings from a sensor, and return notes about the removal.
 
-    Three kinds of readings are implausible: readings far shallower than `place`, the depth of the
-    sensor in still water [m] (readings on deck, or fill values); readings far below the seabed [m];
-    and readings of a stuck sensor. Only the first of several readings at the same time is kept.
-    Depths are corrected if the readings on deck show that the pressures are absolute. If most
-    readings are too shallow or too deep, all are kept, because the sensor itself is wrong;
-    `unusable` then reports the sensor.
+    Three kinds of readings are implausible:
+
+    - readings far shallower than `place`, the depth of the sensor in still water [m], which are
+      readings on deck or fill values;
+    - readings far below the seabed, whose depth is `seabed` [m];
+    - readings of a stuck sensor.
+
+    Only the first of several readings at the same time is kept. Depths are corrected if the
+    readings on deck show that the pressures are absolute. If most readings are too shallow or too
+    deep, all are kept, because the sensor itself is wrong; `unusable` then reports the sensor.
     """
     notes = []
     again = np.zeros(len(sensor.time), bool)

@@ -46,8 +46,8 @@ SWITCH_TOLERANCE = 1e-6
 OF_FRICTION, OF_STRUMMING = range(2)
 """Kinds of drag laws that switch, see `switch_at`."""
 AT_A_LEVEL, TRIALS = 1e-9, 10
-"""Distance from a level that is treated as reaching the level, as a fraction of the segment's depth
-range; and the largest number of iterations to end a part of a segment at a level.
+"""Distance from a level that counts as reaching the level, as a fraction of the segment's depth
+range, and largest number of iterations to end a part of a segment at a level.
 """
 Passed = tuple[float, State, float, State, float]
 """A marched part of a segment. The five values are the unstretched length [m], the state at the

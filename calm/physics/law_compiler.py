@@ -111,7 +111,7 @@ def _bound_once(tree: ast.FunctionDef) -> tuple[set[str], set[str]]:
 class Program:
     """LLVM program for a physics function ("law") and for all laws that it calls.
 
-    A law that is called with several combinations of argument kinds is translated once for each.
+    A law is translated once for each combination of argument kinds with which it is called.
     """
 
     def __init__(self, inlined: set[Law]) -> None:

@@ -40,7 +40,7 @@ tuple in CPython takes half as long as the balance of a segment.
 """
 
 GOES_ON, RUNS_OFF, SEGMENT_UNBALANCED, ROD_UNBALANCED, ENDLESS, NO_ROOM = range(6)
-"""Outcomes of a march: it can continue, or a reason why it stopped."""
+"""Outcomes of a march: the march can continue (GOES_ON), or the reason why the march stopped."""
 FAILURES = (
     "",
     "the line extends without limit",

@@ -81,9 +81,13 @@ class _Layout(NamedTuple):
     """Positions of the entries of a system in an array with one matrix per chunk.
 
     Each matrix has the rows of the blocks of one chunk. The last block of a chunk stays in the
-    reduced system. The columns of a matrix belong, in this order, to the other blocks of the chunk,
-    the last block of the chunk above, the last block of this chunk, the right-hand sides, and the
-    block below.
+    reduced system. The columns of a matrix belong, in this order, to
+
+    - the other blocks of the chunk,
+    - the last block of the chunk above,
+    - the last block of this chunk,
+    - the right-hand sides,
+    - the block below.
 
     Attributes
     ----------

@@ -1,9 +1,13 @@
 """Equilibrium of a net of legs: lines that are joined at nodes.
 
-Each leg is integrated by the march of a single line: from its free end if it has one, else from its
-upper end with an unknown pull, or upwards from the seabed if it is anchored. Further unknowns are
-the depths of the free ends and the positions of the nodes. The conditions are that every leg ends
-at its held position or its node, and that the pulls at every node balance (see
+Each leg is integrated by the march of a single line. The march starts
+
+- at the free end of the leg, if there is a free end;
+- at the touchdown or anchor of an anchored leg, and runs upwards;
+- otherwise at the upper end of the leg, with an unknown pull.
+
+Further unknowns are the depths of the free ends and the positions of the nodes. The conditions are
+that every leg ends at its held position or its node, and that the pulls at every node balance (see
 `calm.solve.leg_marches`).
 """
 

@@ -29,8 +29,7 @@ TYPICAL_PARTS = 8
 class CompiledPart(Enum):
     """A part of the solver that is compiled separately.
 
-    The value of a member is the name of a function. Of all functions in this part of the solver,
-    this function is compiled last.
+    The value of a member is the name of the function that is compiled last in this part.
     """
 
     LINE = "run_search"
