@@ -101,7 +101,7 @@ def common_times(
 ) -> Times:
     """Choose the times of the field, in the period in which both depths and values are known.
 
-    The times are those of the depths, or equally spaced times if a step is given.
+    The times of the depths are chosen, or equally spaced times if a step is given.
     """
     known = [one.time[np.isfinite(one.value)] for one in series]
     known = [one for one in known if len(one)]

@@ -274,7 +274,8 @@ class CurrentSmoother:
     def depths(self, state: Floats, factor: Floats, times: NDArray[np.int64] | slice) -> Floats:
         """Return depths (n, p) of the points [m] in currents `state` (n, 2 K) relative to the mean.
 
-        `factor` (f,) are the logarithms of the factors; the currents are those at the `times`.
+        `factor` (f,) are the logarithms of the factors; `times` selects the n times of these
+        currents.
         """
         forward = self.forward(factor)
         return forward.depths(self.knot_depth[times], *self.currents(state))

@@ -115,7 +115,7 @@ def common_times(
 ) -> Times:
     """Choose the common times of all measurements.
 
-    The first times are those of the first current record, or of the first sensor if there are no
+    All times of the first current record are used, or all times of the first sensor if there are no
     currents. Each other record adds the times that are more than half the median time step away
     from all times chosen so far. Of several added times within a quarter of the step (a burst),
     only the first is used.

@@ -237,7 +237,7 @@ class RecoveredMooring:
     ) -> dict[str, int]:
         """Estimate the common unknowns, correct the requested faults, and write the result.
 
-        Parameters and result are those of `calm.batch.run.run_batch`.
+        The parameters and the result are as in `calm.batch.run.run_batch`.
         """
         task = self._prepared(tell)
         if self.correct:

@@ -5,7 +5,7 @@ which has no effect on the depths. The logarithms of the speeds have a normal di
 mean and covariance are learnt from the record by expectation and maximisation (Dempster, Laird and
 Rubin 1977). Each time is fitted by Gauss-Newton steps under the present distribution. The
 distribution is then updated to the mean and covariance of the fits, including their uncertainty. If
-the pressures do not constrain the distribution, it stays at its prior. The line itself also has an
+the pressures do not constrain the distribution, the prior is kept. The line itself also has an
 error that varies smoothly along its length. This error is a share of the knockdown, estimated from
 the pressures as an average over several trial values.
 

@@ -1,8 +1,8 @@
 """Translation of the physics functions ("laws") to LLVM instructions.
 
 A law uses only numbers, named tuples, sequences of numbers or named tuples, and functions of
-`math`, so that types follow from its arguments. Its operations are translated one by one, in their
-order and with the meaning that they have in Python; LLVM must not rearrange them.
+`math`, so that all types follow from the arguments of the law. The operations are translated one by
+one, in the same order and with the same meaning as in Python; LLVM must not rearrange them.
 
 Named tuples are passed by their address, since no law changes one. Indices are not checked.
 """

@@ -66,7 +66,6 @@ def _gauss(knots: Sequence[Knot], first: int, end: int, middle: float, half: flo
 
 
 def _knots_below(knots: Sequence[Knot], first: int, end: int, tension: float) -> int:
-    """Return the index of the first knot above a tension, searching from knot `first`."""
     while first < end and knots[first].tension <= tension:
         first += 1
     return first

@@ -245,7 +245,7 @@ class Nearby:
     def solved(self, line: Line, water: Water) -> Solution:
         """Solve a different line on the segments of this line.
 
-        The error estimates are those of this line, since the segments are the same.
+        The error estimates of this line also apply to the result, since the segments are the same.
 
         Parameters
         ----------

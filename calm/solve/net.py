@@ -267,9 +267,9 @@ def settled_from(net: NetSearch, near: NetSolution | None) -> Floats:
     """Return the unknowns of a net in equilibrium, to full precision.
 
     If a net in still water is held by slack legs alone, no force determines the direction in which
-    it drifts. Newton's method then begins with slack legs that pull slightly towards their anchors.
-    This pull is reduced by a factor of ten at a time, or by a smaller factor if the method does not
-    converge. Raise NoEquilibrium if no equilibrium is found.
+    the net drifts. Newton's method then begins with slack legs that pull slightly towards their
+    anchors. This pull is reduced by a factor of ten at a time, or by a smaller factor if the method
+    does not converge. Raise NoEquilibrium if no equilibrium is found.
     """
     try:
         return net.settled(roughly_closed(net, near))
