@@ -1,10 +1,12 @@
 """Gaussian-process model of a quantity over depth and time, with scales fitted to the record.
 
 The field is a mean profile plus an anomaly, both estimated from the record. The standard deviation
-of the anomaly depends on depth. Its correlation is a Matérn function of order 3/2 along depth and
-an exponential function in time (Rasmussen and Williams, Gaussian Processes for Machine Learning,
-2006, eq. 4.17 and 4.18; mean and variance eq. 2.25 and 2.26). The uncorrelated part of the variance
-is due to scales below the sensor spacing, and to sensor noise.
+of the anomaly depends on depth. The correlation of the anomaly is a Matérn function of order 3/2
+along depth, and an exponential function in time. The uncorrelated part of the variance is due to
+scales below the sensor spacing, and to sensor noise.
+
+Source: Rasmussen and Williams, Gaussian Processes for Machine Learning, 2006, eq. 4.17 and 4.18 for
+the correlation, eq. 2.25 and 2.26 for the mean and variance.
 
 An error in the depth of an instrument causes an error in its values, which equals the depth error
 times the local gradient. This error is added to the standard deviation of the result without
@@ -153,7 +155,7 @@ def _local_line(weight: Floats, off: Floats, value: Floats, width: float) -> tup
 
 
 class _Block(NamedTuple):
-    """Observations (n, m) around each of n times: at the time itself and its neighbours."""
+    """Observations (n, m) around each of n times: at this time and at the neighbouring times."""
 
     depth: Floats
     anomaly: Floats
@@ -219,7 +221,7 @@ def _correlation(a: Floats, b: Floats, s: Floats, t: Floats, scales: Scales) -> 
 
 
 def posterior(field: GriddedQuantity, times: NDArray[np.int64], levels: Floats) -> LevelPosterior:
-    """Compute the posterior (n, k) at the depths `levels` (k,) or (n, k) [m] at n of the times."""
+    """Compute the posterior (n, k) at depths `levels` (k,) or (n, k) [m], for n indices `times`."""
     block = _block(field, times)
     level = np.broadcast_to(np.atleast_2d(levels), (len(times), np.atleast_2d(levels).shape[1]))
     spread = field.profile.deviation_at(level)

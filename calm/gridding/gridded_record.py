@@ -201,8 +201,9 @@ def read_gridded(
 ) -> GriddedRecord:
     """Read the files of a mooring and fit the field of each quantity.
 
-    The arguments are those of `grid`, as the command has read them; `averaged` is the step as text.
-    Each note is passed to `report`, and each summary card to `show`, as soon as it is known.
+    The arguments are as in `grid`, in the form in which the command reads them; `averaged` is the
+    step as text. Each note is passed to `report`, and each summary card to `show`, as soon as it is
+    known.
     """
     if method not in METHODS:
         raise UsageError(not_among("--method", method, METHODS))

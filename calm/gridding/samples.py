@@ -80,7 +80,7 @@ def _understood(dataset: Dataset, path: Path) -> MooringDepths:
     )
 
 
-ANOTHER_PLACE = 30.0  # difference of pressure [dbar] and depth [m] that suggests another one
+ANOTHER_PLACE = 30.0  # difference of pressure [dbar] and depth [m] that suggests another instrument
 
 MOST = 5_000_000  # maximum number of times written: one a second for two months
 
@@ -101,7 +101,7 @@ def common_times(
 ) -> Times:
     """Choose the times of the field, in the period in which both depths and values are known.
 
-    The times are those of the depths, or equally spaced times if a step is given.
+    The times of the depths are chosen, or equally spaced times if a step is given.
     """
     known = [one.time[np.isfinite(one.value)] for one in series]
     known = [one for one in known if len(one)]
@@ -134,7 +134,7 @@ def common_times(
 def gather(
     depths: MooringDepths, series: Sequence[InstrumentSeries], points: dict[int, int], time: Times
 ) -> Samples:
-    """Average the values around each time (n,), and the depths at which the values were measured.
+    """Average the values, and the depths at which they were measured, around each time (n,).
 
     Each value counts for the nearest time, if this time is within half a time step. `points` maps
     the index of each series to its point on the line.

@@ -1,4 +1,4 @@
-"""Assignment of a list of instruments to the parts of a line, in `deployed` of its file."""
+"""Assignment of listed instruments to the parts of a line, under `deployed` in the mooring file."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from calm.motion.matching import CERTAIN, in_order, named_point, places_of
 from calm.records.current_terms import parse_time, time_text
 from calm.records.instrument_series import Identity
 
-# difference of nominal and still-water depth that is reported: share of the depth, and metres;
-# the larger one counts
+# smallest reported difference of nominal and still-water depth: the larger of a share of the depth,
+# and a distance in metres
 ASTRAY = 0.02, 5.0
 _ITEMS = ("deployed", "items")
 

@@ -139,7 +139,7 @@ class LinearLaw:
 
     @cached_property
     def weight(self) -> Floats:
-        """Weight (n,) of each time under Student's t distribution; a large misfit lowers it."""
+        """Weight (n,) of each time under Student's t distribution, low if the misfit is large."""
         misfit = np.einsum("ns,nst,nt->n", self.left, self.inverse, self.left)
         return np.asarray((ROBUST + self.known.sum(axis=1)) / (ROBUST + misfit))
 
@@ -221,5 +221,6 @@ MOVED = 0.01  # probability that the whole mooring is moved to another depth dur
 FALSE: Mapping[int, float] = {0: 0.01, 1: 0.01, 2: 0.03, 3: 0.10, 4: 0.30, 8: 0.10}
 DRIFT, DRIFTS = 5.0, 0.01  # prior deviation of a drift over the record [m], and its probability
 TIDE = 1.0  # deviation of tide and air pressure [m]
-RESIDUAL_TIDE = 0.15  # deviation that remains if the sea level is given [m]
+# deviation of tide and air pressure that remains if the sea level is given [m]
+RESIDUAL_TIDE = 0.15
 NOISE = 0.2  # standard deviation of the error of a single depth, measured by a pressure sensor [m]

@@ -1,4 +1,4 @@
-"""Estimate the depths of a mooring in blocks of times, and lay out the result."""
+"""Estimation of the depths of a mooring in blocks of times, and layout of the result file."""
 
 from __future__ import annotations
 

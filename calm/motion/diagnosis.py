@@ -68,7 +68,7 @@ Weighed = list[tuple[Suspect, float]]
 
 
 def diagnosed(task: Task) -> tuple[Fault, ...]:
-    """Return the faults of the task, or else diagnose faults of sensors, currents and line."""
+    """Return the faults stored in the task, or else diagnose sensors, currents and line."""
     if task.faults is not None:
         return task.faults
     law, causes = law_near(task)
@@ -174,7 +174,7 @@ class Diagnosis:
         return tuple(found)
 
     def weighed(self, taken: list[Suspect]) -> Weighed:
-        """Return every possible fault other than those in `taken`, with its log odds."""
+        """Return every possible fault that is not in `taken`, with its log odds."""
         result = []
         for suspect in self._suspects(taken, self.fitted(taken, None, 1.0)):
             alike = repeated(self.fitted(taken, suspect, 1.0).pulls)

@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 SEVERAL = ("depth", "depth_sd", "depth_qc")  # variables added to a file of several instruments
-ONE = tuple(name.upper() for name in SEVERAL)  # and to a file of a single instrument
+ONE = tuple(name.upper() for name in SEVERAL)  # the same for a single instrument
 _OF_OLD = ("DEPTH_quality_control", "DEPTH_UNCERTAINTY", "INSTRUMENT_DEPTH")
 NOMINAL = "NOMINAL_DEPTH"  # new name of the nominal depth `DEPTH` of a single instrument
 _TIMES = ("time", "TIME", "Time")

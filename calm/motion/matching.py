@@ -278,9 +278,9 @@ def aligned(
 ) -> tuple[tuple[float, list[int]], tuple[float, list[int]] | None]:
     """Find the cheapest and the second-cheapest way to match each of `few` depths to one of `many`.
 
-    Matches preserve the order of the increasing depths [m]; costs are those of `in_order`. A match
-    is returned as its cost, and a list with the index in `many` of each of `few`. The second match
-    is None if only one is possible.
+    Matches preserve the order of the increasing depths [m]; costs are as in `in_order`. A match is
+    returned as its cost, and the list of the indices in `many` matched to each of `few`. The second
+    match is None if only one match is possible.
     """
     places = len(many)
 

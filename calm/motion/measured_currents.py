@@ -2,11 +2,13 @@
 
 The unknowns at each time are the current at several depths (knots), the relative error in the
 knockdown of each stretch of the line, and the tide. The unknowns of the whole record are factors on
-the drag, the datum, and the offset of each sensor; steps in the datum and the offsets are rare. All
-priors are normal. Errors of meters and sensors follow Student's t distribution, represented by
-weights of the readings. The meter error for each quality flag and the error of the line are
-estimated by expectation and maximisation (Dempster, Laird and Rubin 1977). Gauss-Newton steps over
-the whole record use depths and derivatives from solutions of the line.
+the drag, the datum, and the offset of each sensor; steps in the datum and the offsets are rare. The
+priors are normal, except for the initial values of datum and places and for their steps. These and
+the errors of meters and sensors follow Student's t distribution, represented by weights of the
+readings and by updated variances of the unknowns. Expectation and maximisation (Dempster, Laird and
+Rubin 1977) estimate the meter error for each quality flag. Fisher scoring estimates the error share
+of each stretch. Gauss-Newton steps over the whole record use depths and derivatives from solutions
+of the line.
 """
 
 from __future__ import annotations
@@ -48,7 +50,7 @@ FLAGGED: Mapping[int, float] = {0: 1.0, 1: 1.0, 2: 1.5, 3: 2.0, 4: 4.0, 8: 3.0}
 # limits of the estimated factor on the meter error: the current at even a perfect meter differs
 # from the current on the line around it
 FLAG_RANGE = (0.6, 15.0)
-FEWEST = 20  # least number of readings to estimate such a factor
+FEWEST = 20  # least number of readings to estimate a factor on the meter error
 STUDENT = 4.0  # degrees of freedom of Student's t distribution of the readings
 ALIKE_HOURS = 1.0  # time over which the error of a meter persists [h]
 LEAST_SPREAD = 0.02  # least deviation of a current about its mean [m/s]
@@ -61,11 +63,12 @@ WIDER = 2.0
 METERS_ALIKE = 0.02  # error common to all meters of a record, as a share of the speed
 
 STRETCHES = 10  # number of stretches with separate errors in knockdown
-SPAN = 0.4  # correlation length of these errors, as a share of the line
+SPAN = 0.4  # correlation length of the errors of the stretches, as a share of the line
 SHARE, SHARES = 0.07, (0.01, 0.4)  # prior and limits of the error share of a stretch
 # prior deviations of the logarithm of the error share: common to all stretches, and of each
 ALL_SHARES, EACH_SHARE = 1.0, 0.7
-SHARE_REACH = 0.5  # correlation length of the latter, as a share of the line
+# correlation length of the deviations of single stretches, as a share of the line
+SHARE_REACH = 0.5
 SHARE_STEP = 0.4  # maximum change in the logarithm of an error share in one step
 LINE_HOURS = 3.0  # correlation time of the error of a stretch [h]
 TIDE_HOURS = 2.4  # time in which the correlation of a semidiurnal tide falls to 1/e [h]
@@ -176,10 +179,10 @@ def next_shares(
 ) -> Floats:
     """Return the error shares (z,) of the stretches after one step of Fisher scoring.
 
-    `alike` (z, z) is the prior correlation of the errors of the stretches, relative to `shares`;
-    `square` and `covariance` (z, z) are the means over a record of length `hours` of the products
-    of their estimates and of their posterior covariance. The logarithms of the shares have a
-    normal prior.
+    The errors of the stretches, relative to `shares`, have the prior correlation `alike` (z, z).
+    Over a record of length `hours`, `square` (z, z) is the mean of the products of the estimated
+    errors, and `covariance` (z, z) is the mean of their posterior covariance. The logarithms of the
+    shares have a normal prior.
     """
     inverse = np.linalg.inv(alike)
     known = inverse @ (alike - covariance)
@@ -271,7 +274,8 @@ class CurrentSmoother:
     def depths(self, state: Floats, factor: Floats, times: NDArray[np.int64] | slice) -> Floats:
         """Return depths (n, p) of the points [m] in currents `state` (n, 2 K) relative to the mean.
 
-        `factor` (f,) are the logarithms of the factors; the currents are those at the `times`.
+        `factor` (f,) are the logarithms of the factors; `times` selects the n times of these
+        currents.
         """
         forward = self.forward(factor)
         return forward.depths(self.knot_depth[times], *self.currents(state))
@@ -641,8 +645,9 @@ class CurrentSmoother:
     def doubt(self) -> Floats:
         """Probability (n, k) that the meter reading at a level is unrelated to the current there.
 
-        The probability follows from the prior odds and two normal densities of the reading. One has
-        the variance of the meter error; the other also includes the variability of the current.
+        The probability follows from the prior odds and two normal densities of the reading. The
+        first density has the variance of the meter error; the second also includes the variability
+        of the current.
         """
         one, noise = self.measured, self.meter_noise
         spread = np.square(self.knots.level @ self.spread)

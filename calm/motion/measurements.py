@@ -100,7 +100,10 @@ def level_names(measured: MooringMeasurements, labels: Sequence[str]) -> tuple[s
 
 
 def nearest(time: Times, wanted: Times) -> Integers:
-    """Return the index (n,) of the time nearest to each wanted time; the earlier one in a tie."""
+    """Return the index (n,) of the time nearest to each wanted time.
+
+    If two times are equally near, the earlier time is chosen.
+    """
     after = np.clip(np.searchsorted(time, wanted), 0, len(time) - 1)
     before = np.maximum(after - 1, 0)
     earlier = np.abs(wanted - time[before]) <= np.abs(time[after] - wanted)
@@ -112,7 +115,7 @@ def common_times(
 ) -> Times:
     """Choose the common times of all measurements.
 
-    The first times are those of the first current record, or of the first sensor if there are no
+    All times of the first current record are used, or all times of the first sensor if there are no
     currents. Each other record adds the times that are more than half the median time step away
     from all times chosen so far. Of several added times within a quarter of the step (a burst),
     only the first is used.
@@ -204,7 +207,7 @@ def exclude_readings(
     """Remove the readings that `wrong` (n, s) marks.
 
     Also return, for each sensor with such readings, the label, the number of these readings, and
-    the depth [m] and the time of the first.
+    the depth [m] and the time of the first such reading.
     """
     first = [(j, at) for j, at in enumerate(wrong.argmax(axis=0).tolist()) if wrong[at, j]]
     counts, time = wrong.sum(axis=0).tolist(), np.datetime_as_string(measured.time, "s")
@@ -248,7 +251,7 @@ def joined(
             )
             places = [float(still[where])] if label else at[np.isfinite(at)].tolist()
             place = float(np.mean(places)) if places else float("inf")
-            columns.append((place, where, at, u, v, _nearest(one, k, time)))
+            columns.append((place, where, at, u, v, _worse_flags(one, k, time)))
     columns.sort(key=lambda column: column[0])
     none = np.zeros((len(time), 0))
     level, u, v, flag = (
@@ -276,7 +279,7 @@ def joined(
     return measured
 
 
-def _nearest(one: CurrentMeasurements, k: int, time: Times) -> NDArray[np.int8]:
+def _worse_flags(one: CurrentMeasurements, k: int, time: Times) -> NDArray[np.int8]:
     """Return the worse of the flags before and after each time; 9 outside the record."""
     after = np.searchsorted(one.time, time)
     upper, lower = np.minimum(after, len(one.time) - 1), np.maximum(after - 1, 0)

@@ -216,7 +216,6 @@ class RecoveredMooring:
             self.source["corrected"] = "corrected for: " + "; ".join(off)
 
     def _without(self, points: dict[int, int], labels: Sequence[str]) -> dict[int, int]:
-        """Return the points of the sensors that are not ignored."""
         known = [labels[at] for at in points.values()]
         for option, given in (("--without", self.without), ("--hold-out", self.hidden)):
             for label in given:
@@ -238,7 +237,7 @@ class RecoveredMooring:
     ) -> dict[str, int]:
         """Estimate the common unknowns, correct the requested faults, and write the result.
 
-        Parameters and result are those of `calm.batch.run.run_batch`.
+        The parameters and the result are as in `calm.batch.run.run_batch`.
         """
         task = self._prepared(tell)
         if self.correct:

@@ -25,7 +25,8 @@ FAR_DATUM = 10.0  # offset of all sensors that is always reported [m]
 # least error in length that is reported if no currents were measured, in prior deviations;
 # inferred currents absorb much of such an error
 FAR_LENGTH = 5.0
-FAR_FACTOR = 3.0  # deviations of a drag factor from 1 above which it absorbs another error
+# prior deviations of a drag factor from 1 above which the factor absorbs another error
+FAR_FACTOR = 3.0
 WORST = 0.3  # share of the knockdown above which the error of the line is reported
 
 

@@ -199,8 +199,8 @@ def read_sea_level(path: Path) -> tuple[NDArray[np.datetime64], Floats]:
 
 CONSTANT = 1e-6  # range of depths up to which a sensor counts as constant [m]
 MISPLACED = 20.0  # tolerance of the shallowest depth [m]; a factor of up to two is also tolerated
-UNITS = {"psi for dbar?": 1.45038, "dbar for psi?": 0.68948}  # ratios of such readings to true ones
-ALIKE = 0.03  # relative tolerance of that ratio, doubled for several sensors
+UNITS = {"psi for dbar?": 1.45038, "dbar for psi?": 0.68948}  # ratios of readings to true values
+ALIKE = 0.03  # relative tolerance of the ratios in `UNITS`, doubled for several sensors
 APART = 3.0  # least distance between exchanged sensors [m]
 BELOW = 1.1  # readings are too deep if they exceed the seabed by this factor and by `MISPLACED`
 
@@ -210,12 +210,16 @@ def plausible(
 ) -> tuple[InstrumentSeries, list[str]]:
     """Remove implausible readings from a sensor, and return notes about the removal.
 
-    Three kinds of readings are implausible: readings far shallower than `place`, the depth of the
-    sensor in still water [m] (readings on deck, or fill values); readings far below the seabed [m];
-    and readings of a stuck sensor. Only the first of several readings at the same time is kept.
-    Depths are corrected if the readings on deck show that the pressures are absolute. If most
-    readings are too shallow or too deep, all are kept, because the sensor itself is wrong;
-    `unusable` then reports the sensor.
+    Three kinds of readings are implausible:
+
+    - readings far shallower than `place`, the depth of the sensor in still water [m], which are
+      readings on deck or fill values;
+    - readings far below the seabed, whose depth is `seabed` [m];
+    - readings of a stuck sensor.
+
+    Only the first of several readings at the same time is kept. Depths are corrected if the
+    readings on deck show that the pressures are absolute. If most readings are too shallow or too
+    deep, all are kept, because the sensor itself is wrong; `unusable` then reports the sensor.
     """
     notes = []
     again = np.zeros(len(sensor.time), bool)
@@ -281,7 +285,7 @@ def _stuck(value: Floats) -> NDArray[np.bool_]:
 
 
 AIR = instrument_text.AIR / 1.0082  # excess depth by air pressure [m], at 1.0082 dbar/m of water
-NEAR_AIR, ON_DECK = 2.5, 0.6  # tolerances for that excess: in calm water, and on deck [m]
+NEAR_AIR, ON_DECK = 2.5, 0.6  # tolerances for the excess `AIR`: in calm water, and on deck [m]
 
 
 def air_notes(depth: Floats, place: Floats) -> list[str]:

@@ -317,7 +317,7 @@ def depths_at(result: Dataset, point: int) -> tuple[Floats, Floats]:
 
 
 def series_of(study: MotionEstimate, measured: MooringMeasurements) -> list[SensorSeries]:
-    """Return the depths of all sensors from the top down, then those of the other instruments."""
+    """Return the depths of all sensors from the top down, followed by the other instruments."""
     mooring, used, result = study.task.mooring, study.task.measured.label, study.dataset
     labels = labels_of(mooring)
     columns = dict(zip(measured.point.tolist(), measured.depth.T, strict=True))

@@ -5,7 +5,7 @@ which has no effect on the depths. The logarithms of the speeds have a normal di
 mean and covariance are learnt from the record by expectation and maximisation (Dempster, Laird and
 Rubin 1977). Each time is fitted by Gauss-Newton steps under the present distribution. The
 distribution is then updated to the mean and covariance of the fits, including their uncertainty. If
-the pressures do not constrain the distribution, it stays at its prior. The line itself also has an
+the pressures do not constrain the distribution, the prior is kept. The line itself also has an
 error that varies smoothly along its length. This error is a share of the knockdown, estimated from
 the pressures as an average over several trial values.
 
@@ -38,7 +38,8 @@ SURFACE, DECAY, LEAST = 0.3, 400.0, 0.03
 ALL, EACH, ALIKE = 0.7, 1.4, 0.5
 PRIOR = 20.0  # weight of the prior distribution, as a number of times of the record
 MOST_TIMES = 240  # number of times from which the distribution is learnt
-TURNS, FIRST = 12, 2  # iterations, of which the first leave the distribution unchanged
+# number of iterations, and of first iterations that leave the distribution unchanged
+TURNS, FIRST = 12, 2
 # share of the learning times from which the distribution is updated: those with the largest
 # knockdown, because the tide hides the effect of the currents at the other times
 STRONGER = 0.5
@@ -231,7 +232,8 @@ def raised(mooring: Design, measured: MooringMeasurements) -> float:
     """Return the depth error [m] of the sensor that is farthest above its still-water depth.
 
     Currents only lower a line, so this error means that the water depth, a length or the position
-    in the file is wrong. It is negative, or 0 if no sensor is far above its still-water depth.
+    in the file is wrong. The error is negative, or 0 if no sensor is far above its still-water
+    depth.
     """
     depth = measured.depth - measured.moved[:, None]
     known = np.isfinite(depth).any(axis=0)

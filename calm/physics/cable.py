@@ -46,13 +46,14 @@ SWITCH_TOLERANCE = 1e-6
 OF_FRICTION, OF_STRUMMING = range(2)
 """Kinds of drag laws that switch, see `switch_at`."""
 AT_A_LEVEL, TRIALS = 1e-9, 10
-"""Distance from a level that is treated as reaching the level, as a fraction of the segment's depth
-range; and the largest number of iterations to end a part of a segment at a level.
+"""Distance from a level that counts as reaching the level, as a fraction of the segment's depth
+range, and largest number of iterations to end a part of a segment at a level.
 """
 Passed = tuple[float, State, float, State, float]
-"""A marched part of a segment: its unstretched length [m]; the state at its midpoint and the strain
-of its upper half (or, if it is not halved, the state at its top and 0); the state at its bottom and
-the strain of its lower half (or of the whole part).
+"""A marched part of a segment. The five values are the unstretched length [m], the state at the
+midpoint and the strain of the upper half, and the state at the bottom and the strain of the lower
+half. If the part is not halved, the second and third values are the state at its top and 0, and the
+last value is the strain of the whole part.
 """
 SETTLED_ROTATION = 1e-6
 """Squared rotation of a segment [rad²] in the last of a few Newton steps below which an approximate

@@ -94,7 +94,7 @@ def tabulated_hull(rows: Sequence[tuple[float, float, float]]) -> Hull:
 
 
 def immersed_shares(form: int, rows: Sequence[HullRow], share: float) -> tuple[float, float]:
-    """Return the draft and the immersed area of a hull, as fractions of those of the whole hull.
+    """Return the draft and the immersed area, as fractions of the values for the whole hull.
 
     Parameters
     ----------

@@ -1,8 +1,8 @@
 """Translation of the physics functions ("laws") to LLVM instructions.
 
 A law uses only numbers, named tuples, sequences of numbers or named tuples, and functions of
-`math`, so that types follow from its arguments. Its operations are translated one by one, in their
-order and with the meaning that they have in Python; LLVM must not rearrange them.
+`math`, so that all types follow from the arguments of the law. The operations are translated one by
+one, in the same order and with the same meaning as in Python; LLVM must not rearrange them.
 
 Named tuples are passed by their address, since no law changes one. Indices are not checked.
 """
@@ -58,7 +58,6 @@ COMPARISON = {
 
 @cache
 def _functions_in(path: str) -> dict[str, ast.FunctionDef]:
-    """Return the functions of a source file by name."""
     tree = ast.parse(Path(path).read_text("utf-8"))
     return {node.name: node for node in tree.body if isinstance(node, ast.FunctionDef)}
 
@@ -112,7 +111,7 @@ def _bound_once(tree: ast.FunctionDef) -> tuple[set[str], set[str]]:
 class Program:
     """LLVM program for a physics function ("law") and for all laws that it calls.
 
-    A law that is called with several combinations of argument kinds is translated once for each.
+    A law is translated once for each combination of argument kinds with which it is called.
     """
 
     def __init__(self, inlined: set[Law]) -> None:
@@ -221,7 +220,6 @@ class _Body(Instructions):
             raise Uncompilable(f"{where} cannot be compiled: {failure!r}") from failure
 
     def take_argument(self, name: str, word: str, kind: Any) -> None:
-        """Bind an argument."""
         if isinstance(kind, Global):
             self.names[name] = kind
             return
@@ -238,7 +236,6 @@ class _Body(Instructions):
         self.bind(name, value)
 
     def text(self, symbol: str, inlined: bool) -> str:
-        """Return the function."""
         result, words = self.known.get(RESULT, NOTHING), self.words
         if not isinstance(result, str):
             words, result = ["ptr %result", *words], "void"
@@ -274,7 +271,6 @@ class _Body(Instructions):
         return self.known[name]
 
     def bind(self, name: str, value: Any) -> None:
-        """Set a variable."""
         if name not in self.read_names:
             return
         if name in self.once:
@@ -288,7 +284,6 @@ class _Body(Instructions):
     # statements; each returns whether the next statement can be reached
 
     def run(self, statements: list[Any]) -> bool:
-        """Translate statements."""
         for statement in statements:
             self.line = statement.lineno
             if not getattr(self, f"_do_{type(statement).__name__.lower()}")(statement):
@@ -325,7 +320,6 @@ class _Body(Instructions):
         return True
 
     def put(self, target: Any, value: Any) -> None:
-        """Set a variable, an element of a sequence, or a tuple of both."""
         if isinstance(target, ast.Name):
             self.bind(target.id, value)
         elif isinstance(target, ast.Tuple):
@@ -382,7 +376,6 @@ class _Body(Instructions):
         return self.finish(node, not forever, over, end)
 
     def loop(self, body: list[Any], again: str, end: str) -> bool:
-        """Translate the body of a loop."""
         self.loops.append((again, end))
         reached = self.run(body)
         self.loops.pop()
@@ -450,7 +443,6 @@ class _Body(Instructions):
     # expressions
 
     def refuse(self, part: Any) -> None:
-        """Reject a construct of Python that laws must not use."""
         if part:
             what = part[0] if isinstance(part, list) else part
             raise TypeError(f"`{ast.unparse(what)}` is not allowed here in a law")
@@ -460,14 +452,12 @@ class _Body(Instructions):
         return getattr(self, f"_of_{type(node).__name__.lower()}")(node)
 
     def number(self, node: Any) -> Number:
-        """Translate an expression whose value is a number."""
         value = self.of(node)
         if not isinstance(value, Number):
             raise TypeError(f"{ast.unparse(node)} is not a number")
         return value
 
     def test(self, node: Any) -> Number:
-        """Translate a condition."""
         if isinstance(node, ast.BoolOp):
             found: Number = self.either(node, self.test)
             return found
@@ -556,7 +546,7 @@ class _Body(Instructions):
         return Array(view.kind.item, left), address
 
     def part_of(self, view: ArrayView, bounds: Any) -> ArrayView:
-        """Return a part of a sequence of one dimension. Its bounds must not be negative."""
+        """Return a slice of a one-dimensional sequence. The bounds must not be negative."""
         self.refuse(bounds.step)
         if view.kind.dimensions != 1:
             raise TypeError("only a sequence of one dimension can be sliced")
@@ -570,7 +560,6 @@ class _Body(Instructions):
         return ArrayView(view.kind, data, (self.lesser(length, number_of(0), "sgt").text,))
 
     def bound(self, node: Any) -> Number:
-        """Translate a bound of a part of a sequence."""
         bound: Number = self.as_kind(self.number(node), WHOLE)
         if bound.known is not None and bound.known < 0:
             raise TypeError("the bounds of a slice must not be negative")
@@ -666,14 +655,12 @@ class _Body(Instructions):
         return found
 
     def joined(self, how: str, tests: list[Number]) -> Number:
-        """Combine conditions."""
         found, *others = tests
         for each in others:
             found = self.value(TRUTH, f"{how} i1 {found.text}, {each.text}")
         return found
 
     def compared(self, op: Any, left: Number, right: Number) -> Number:
-        """Compare two numbers."""
         kind = common(common(left.kind, right.kind), WHOLE)
         left, right = self.as_kind(left, kind), self.as_kind(right, kind)
         whole, real = COMPARISON[op]
@@ -712,7 +699,6 @@ class _Body(Instructions):
         return called_so(function, *given)
 
     def _call_math(self, function: Any, *given: Any) -> Number:
-        """Call a function of `math`."""
         name = function.__name__
         symbol = INTRINSIC.get(name, f"calm.{name}")
         if function is not getattr(math, name, None) or name not in (*INTRINSIC, *FROM_MATH):
@@ -740,7 +726,7 @@ class _Body(Instructions):
         return self.value(WHOLE, f"select i1 {test.text}, i64 {one.text}, i64 {other.text}")
 
     def _call_max(self, function: Any, *given: Any) -> Number:
-        """Return the greatest or least number; equal numbers and NaN are treated as by CPython."""
+        """Translate `max` or `min`; equal numbers and NaN are treated as by CPython."""
         kind = given[0].kind
         for each in given:
             kind = common(kind, each.kind)

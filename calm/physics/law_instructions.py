@@ -61,7 +61,7 @@ class Global(NamedTuple):
 
     @property
     def kind(self) -> "Global":
-        """Kind of an argument that is this function."""
+        """Kind of a law's argument if this object is passed to the law."""
         return self
 
 

@@ -156,7 +156,6 @@ def _layout_of(kind: Any, given: str) -> tuple[str, list[str]]:
 
 
 def _address_of_array(array: Any) -> int:
-    """Return the address of the data of an array without gaps."""
     if not array.flags.c_contiguous:
         raise ValueError("an array for a compiled law must be contiguous")
     return _pointer_at(id(array) + _DATA).value or 0

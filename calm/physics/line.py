@@ -40,7 +40,7 @@ tuple in CPython takes half as long as the balance of a segment.
 """
 
 GOES_ON, RUNS_OFF, SEGMENT_UNBALANCED, ROD_UNBALANCED, ENDLESS, NO_ROOM = range(6)
-"""Outcomes of a march: it can continue, or a reason why it stopped."""
+"""Outcomes of a march: the march can continue (GOES_ON), or the reason why the march stopped."""
 FAILURES = (
     "",
     "the line extends without limit",
@@ -61,7 +61,7 @@ class Bed(NamedTuple):
     ----------
     east, north : slope of the seabed, as the increase in depth per metre to the east and north [-]
     friction : friction coefficient along a line on the seabed [-]
-    excess : buoyancy per displaced cubic metre, in excess of that in reference water [N/m³]
+    excess : buoyancy per displaced cubic metre, minus the value in reference water [N/m³]
     """
 
     east: float
@@ -181,7 +181,7 @@ class _Arrays:
         return given
 
     def __getstate__(self) -> dict[str, Any]:
-        """Pickle the fields only, without the values that `once_per_input` has stored."""
+        # without the values that `once_per_input` has stored in the object
         return {each.name: getattr(self, each.name) for each in fields(self)}  # type: ignore[arg-type]
 
     def _same_length(self, *names: str) -> None:
@@ -409,7 +409,7 @@ class Line(_Arrays):
 
         Parameters
         ----------
-        excess : (n,) buoyancy per displaced cubic metre, in excess of that in reference water
+        excess : (n,) buoyancy per displaced cubic metre, minus the value in reference water
             [N/m³]
         """
         whole = np.where(self.flexible, self.length, 1.0)

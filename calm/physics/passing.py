@@ -44,9 +44,15 @@ from calm.physics.track import CABLE, ROD, Course
 MOST_SEGMENTS = 50_000
 
 Z, FX, FY, FZ, USED, NODES, LANDED, HANGING, GROUNDED, FAILURE = range(10)
-"""Indices into the results of a march: height [m] and force above [N] of the end; numbers of
-segments used and nodes passed; stage of the touchdown, or -1; number of nodes off the seabed;
-unstretched length on the seabed [m]; reason why the march stopped, see `calm.physics.line`.
+"""Indices into the results of a march.
+
+- Z: height of the end [m]
+- FX, FY, FZ: force above the end [N]
+- USED, NODES: number of segments used, and number of nodes passed
+- LANDED: stage of the touchdown, or -1
+- HANGING: number of nodes off the seabed
+- GROUNDED: unstretched length on the seabed [m]
+- FAILURE: reason why the march stopped, see `calm.physics.line`
 """
 LEFT = 10
 

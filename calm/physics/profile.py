@@ -10,7 +10,7 @@ from calm.physics.line import Floats, Water, once_per_input
 from calm.physics.seawater import REFERENCE_DENSITY
 
 LEAST_PART = 0.01
-"""Smallest fraction of a chosen segment at which it may be cut short."""
+"""Smallest length at which a chosen segment may end early, as a fraction of its full length."""
 
 
 NEAR_A_LEVEL = 1e-6

@@ -2,7 +2,7 @@
 
 All results follow from the recorded coordinates. The interpolation of the water and the laws of
 drag and friction are implemented independently of the march. Only measured curves (stretch, drag,
-strumming) are shared with it.
+strumming) are shared with the march.
 """
 
 from collections.abc import MutableSequence, Sequence

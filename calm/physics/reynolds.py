@@ -198,7 +198,7 @@ class DragCurve:
         return LARGEST_SPHERE if self.slenderness is None else LARGEST_CYLINDER
 
     def factor(self, reynolds: float) -> float:
-        """Return the ratio of the drag at a Reynolds number to that with a constant coefficient."""
+        """Return the drag at a Reynolds number divided by the drag with a constant coefficient."""
         return drag_variation(Smooth(reynolds, self.lengthening), 1.0)
 
     @cached_property

@@ -1,4 +1,4 @@
-"""Inclination of a rigid body: axis at which the forces on it have no moment about its midpoint."""
+"""Inclination of a rigid body: axis for which the moments about the midpoint of the body vanish."""
 
 from collections.abc import Sequence
 from math import inf, sqrt

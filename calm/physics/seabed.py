@@ -165,10 +165,14 @@ def closure(
     """Return the relative difference between the sum of the loads and the force at a line's end.
 
     If part of the line lies on the seabed, the sum of the loads above the touchdown must have no
-    component normal to the seabed, with two exceptions: a downward force at a rigid piece or clamp
-    that stands on the seabed, and an upward force less than the weight of a rigid piece that lies
-    on the seabed. Along the part on the seabed, friction and the component of the weight along the
-    line are included.
+    component normal to the seabed. There are two exceptions:
+
+    - a downward force is allowed at a rigid piece or clamp that stands on the seabed;
+    - an upward force is allowed at a rigid piece that lies on the seabed, if the force is less than
+      the weight of the piece.
+
+    Along the part on the seabed, friction and the component of the weight along the line are
+    included.
 
     Parameters
     ----------

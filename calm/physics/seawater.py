@@ -15,7 +15,7 @@ REFERENCE_DENSITY = 1025.0
 """Density of the reference sea water [kg/m³], for which buoyancies and drags are specified."""
 
 REFERENCE_VISCOSITY = 1.36e-6
-"""Default kinematic viscosity [m²/s], that of sea water at 10 °C and salinity 35."""
+"""Default kinematic viscosity [m²/s], for sea water at 10 °C and salinity 35."""
 
 MID_LATITUDE = 45.0
 """Latitude assumed if the position is unknown [degrees]. It only affects the conversion of depth to

@@ -66,7 +66,6 @@ def _gauss(knots: Sequence[Knot], first: int, end: int, middle: float, half: flo
 
 
 def _knots_below(knots: Sequence[Knot], first: int, end: int, tension: float) -> int:
-    """Return the index of the first knot above a tension, searching from knot `first`."""
     while first < end and knots[first].tension <= tension:
         first += 1
     return first
@@ -191,7 +190,8 @@ def _cubics(xs: list[float], ys: list[float]) -> list[tuple[float, float, float,
 def _slopes(widths: list[float], chords: list[float]) -> list[float]:
     """Return the slope at every point.
 
-    The slope is a weighted harmonic mean of the adjacent slopes or, at an end, that of a parabola.
+    The slope is a weighted harmonic mean of the adjacent mean slopes. At an end, the slope is the
+    slope of a parabola through three points.
     """
     if len(chords) == 1:
         return [chords[0], chords[0]]

@@ -2,8 +2,8 @@
 
 Amplitudes A are single amplitudes relative to the diameter, A/D [-]; angles are in radians. A long
 line has a mode near every frequency, so it is assumed to strum wherever it sheds vortices. In a
-sheared current, or with attachments or fairing, it strums less; the factors given here are upper
-limits.
+sheared current, or with attachments or fairing, a line strums less; the factors given here are
+upper limits.
 """
 
 from collections.abc import Callable, Mapping

@@ -111,7 +111,7 @@ def extrapolate(before: Record, coarse: Extent, after: Record, fine: Extent, nea
 def next_pair(
     before: Record, coarse: Extent, n: int, after: Record, fine: Extent, m: int
 ) -> tuple[int, int]:
-    """Return the next pair of corresponding nodes in the coarse and in the fine shape."""
+    """Return the next corresponding nodes, after node n of the coarse and m of the fine shape."""
     last, end = coarse.nodes - 1, fine.nodes - 1
     if not coarse.landed or not fine.landed:
         following = next_node(before, n, last)

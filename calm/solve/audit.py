@@ -2,7 +2,8 @@
 
 The audit shares no code with the march and takes only positions from it. Force balance: buoyancy
 and drag of all elements sum to the force at the end of the line. Moment balance: every axis lies
-along the mean of the forces at its two ends, and the stretch of every cable matches that force.
+along the mean of the forces at its two ends, and the stretch of every cable matches this mean
+force.
 """
 
 from copy import copy

@@ -78,19 +78,23 @@ def _solved(diagonal: Numbers, upper: Numbers, lower: Numbers, right: Numbers) -
 
 
 class _Layout(NamedTuple):
-    """Places of a system in an array with a matrix for each chunk.
+    """Positions of the entries of a system in an array with one matrix per chunk.
 
     Each matrix has the rows of the blocks of one chunk. The last block of a chunk stays in the
-    reduced system. The columns of a matrix belong, in this order, to the other blocks of the chunk,
-    the last block of the chunk above, the last block of this chunk, the right-hand sides, and the
-    block below.
+    reduced system. The columns of a matrix belong, in this order, to
+
+    - the other blocks of the chunk,
+    - the last block of the chunk above,
+    - the last block of this chunk,
+    - the right-hand sides,
+    - the block below.
 
     Attributes
     ----------
     chunks, width : number of matrices, and of their columns
-    places : place of every entry of the diagonal, the upper and lower blocks and the right-hand
-        sides
-    padding : diagonal of the blocks that fill up the last chunk
+    places : indices into the flat array of all entries of the diagonal, upper and lower blocks, and
+        of the right-hand sides
+    padding : indices of the diagonal entries of the blocks that fill up the last chunk
     """
 
     chunks: int
@@ -132,7 +136,7 @@ def _densely(diagonal: Numbers, upper: Numbers, lower: Numbers, right: Numbers) 
 
 
 def _dense(diagonal: Numbers, upper: Numbers, lower: Numbers) -> Numbers:
-    """Return block-tridiagonal matrices in full (..., n b, n b)."""
+    """Convert block-tridiagonal matrices to full matrices (..., n b, n b)."""
     *many, count, size, _ = diagonal.shape
     matrix = np.zeros((*many, count, size, count, size), diagonal.dtype)
     for blocks, at in (

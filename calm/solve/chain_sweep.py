@@ -1,7 +1,7 @@
 """Motion of a chain of masses, springs and dampers at many frequencies, as a compiled function.
 
 The matrix of each frequency is complex, symmetric and block-tridiagonal, with blocks of the three
-directions. One sweep down the chain eliminates its nodes, and one up finds their motion. Complex
+directions. A sweep down the chain eliminates the nodes, and a sweep up finds their motions. Complex
 numbers are pairs of floats. A symmetric matrix is the six numbers of its upper triangle, row by
 row.
 """

@@ -1,9 +1,9 @@
-"""Closing of a line: find the value of its unknown at which the line ends at its anchor.
+"""Closing of a line: search for the value of the unknown at which the line ends at its anchor.
 
 The *miss* is the height [m] of the marched end of the line above its target, which is the top of
 the anchor, or the tow point. The miss decreases as the free end goes deeper and as more of a
-float's buoyancy is used. The root of the miss is found on fixed segments, on which it is
-continuous.
+float's buoyancy is used. The root of the miss is found on fixed segments, because the miss is
+continuous on these.
 """
 
 from math import isnan, nan
@@ -155,7 +155,7 @@ def miss_at(about: About, x: float) -> float:
 
 
 def place(problem: LineProblem, unknown: Unknown, x: float) -> tuple[float, float]:
-    """Set the loads of those pieces that are at the surface, for the value x of the unknown.
+    """Set the loads of the pieces that are at the surface, for the value x of the unknown.
 
     Returns
     -------

@@ -52,7 +52,7 @@ _OF_PIECE = {
         "push_north",
     )
 }
-"""Names of the arrays of a line, with the field of a march's load that each array corresponds to.
+"""Names of the arrays of a `Line`, and the field of a march's load that corresponds to each array.
 """
 
 
@@ -239,14 +239,13 @@ def refusal_of(found: FoundShape, line: Line, water: Water) -> NoEquilibrium:
             "The approximate shape has a part on the seabed, but the exact shape does not."
         )
     if ending == solution.BELOW_SEABED:
-        return touching(piece, value, _longer_than_deep(line, water))
+        return touching(piece, value, _excess_length_note(line, water))
     if ending == solution.ABOVE_SURFACE:
-        return risen(piece, value, _longer_than_deep(line, water))
+        return risen(piece, value, _excess_length_note(line, water))
     return audit_refusal(ending, value)
 
 
-def _longer_than_deep(line: Line, water: Water) -> str:
-    """Return a sentence on a line that is longer than the water depth, or "" for other lines."""
+def _excess_length_note(line: Line, water: Water) -> str:
     depth, length = water.depth, float(line.length.sum())
     if length <= depth:
         return ""

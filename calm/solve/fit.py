@@ -51,8 +51,7 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
     # long segments are exact for a plumb line
     coarse = replace(settings, angle_step=max(settings.angle_step, COARSE_STEP))
 
-    def excess(_: None, length: float) -> float:
-        """Return the depth of the free end, minus the required depth [m]."""
+    def excess_depth(_: None, length: float) -> float:
         try:
             solution = solve_mooring(line.with_length(piece, length), still_water, coarse)
         except NoEquilibrium as refusal:
@@ -62,14 +61,14 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
         return -float(solution.position[0, 2]) - top_depth
 
     near = settings.tolerance * water.depth
-    if upright is not None and abs(excess(None, upright)) <= near:
+    if upright is not None and abs(excess_depth(None, upright)) <= near:
         return upright
     # part of the line lies on the seabed, so a longer piece does not lengthen the suspended part
     room = water.depth - line.anchor_height - top_depth
     others = float(line.length.sum()) - float(line.length[piece])
     start = max(room - others, shortest) if upright is None else upright
     found, fitting, left, _ = root_near(
-        excess, None, start, -1.0, shortest, water.depth, near, 1e-9 * water.depth
+        excess_depth, None, start, -1.0, shortest, water.depth, near, 1e-9 * water.depth
     )
     if found and abs(left) <= near:
         return fitting

@@ -8,8 +8,8 @@ plumb; only its vertical speed is unknown. If the horizontal current varies with
 unknown too, and the line is inclined. The drift is then found by iteration from the motion of the
 plumb line, if necessary through steps of weaker shear.
 
-A part on which the line above pushes down overtakes that line, and the line doubles back. The
-balance of forces still holds, but the line may tangle.
+If a part is pushed down by the line above, the part overtakes that line, and the line doubles back.
+The forces still balance, but the line may tangle.
 """
 
 from dataclasses import dataclass, fields, replace

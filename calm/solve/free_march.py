@@ -1,8 +1,8 @@
 """Marches of a freely rising line, in the flow relative to the moving line.
 
-The line is marched from both ends to the node where its tension should be largest. A march that
-starts at a free end is stable. A march that arrives at a free end is unstable there, where little
-tension is left.
+The line is marched from both ends to the node where its tension should be largest. A march away
+from a free end is stable. A march towards a free end is unstable near this end, where the tension
+is small.
 """
 
 from dataclasses import dataclass, replace
@@ -54,7 +54,7 @@ class Rising:
 
     @property
     def lifts(self) -> Floats:
-        """Net buoyancy of each part in water of the reference density, positive up [N]."""
+        """Net buoyancy (n,) of each piece in water of the reference density, positive up [N]."""
         return self.line.total_buoyancy
 
     @cached_property

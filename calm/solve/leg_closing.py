@@ -1,8 +1,8 @@
 """Closing of a net of legs on fixed segments by Newton's method, as compiled laws.
 
 Broyden's rule updates the Jacobian (`slopes`) as long as each step reduces the residual (`found`)
-enough; otherwise it is computed anew. A net with a single unknown is closed by secants, or by
-bisection of a bracket if these do not converge.
+enough; otherwise the Jacobian is computed anew. A net with a single unknown is closed by secants,
+or by bisection of a bracket if these do not converge.
 """
 
 from collections.abc import MutableSequence, Sequence
@@ -59,7 +59,7 @@ SINGULAR = 1e-14
 """Pivot, in shares, below which the Newton step leaves an unknown unchanged."""
 NEGLIGIBLE_PULL = 1e-5
 """Largest horizontal pull at a touchdown that counts as none, as a fraction of the weight of a leg.
-It exceeds the drag of the weak current that is added to still water.
+The limit exceeds the drag of the weak current that is added to still water.
 """
 NEEDS_ROOM = -1
 """Outcome of a search for which the work arrays hold too few segments (instead of `FOUND` or

@@ -3,8 +3,8 @@
 The unknowns are the components of the force on the lower end of the leg. The horizontal components
 are the pull at the touchdown. The vertical component is the weight carried by the seabed or, if no
 part lies on the seabed, minus the uplift on the anchor. A march up from the touchdown is stable
-even if the pull there is zero. Then the leg is slack: the part on the seabed is longer than the
-distance to the anchor.
+even if the pull there is zero. If this pull is zero, the leg is slack: the part on the seabed is
+longer than the distance to the anchor.
 """
 
 from collections.abc import Sequence
@@ -302,7 +302,7 @@ def march_suspended(
 
 
 def turn_round(record: Record, nodes: int) -> None:
-    """Reverse the record of an upward march. It then begins with the pull at the upper end."""
+    """Reverse the record of an upward march, which then begins with the pull at the upper end."""
     for k in range(6):
         a, b = 1, nodes - 1
         column = record[k]

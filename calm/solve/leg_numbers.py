@@ -13,23 +13,36 @@ from calm.physics.track import Course
 from calm.solve.problem import LineProblem, SearchArrays
 
 STANDING, HANGING_DOWN, PULLED, ANCHORED = range(4)
-"""Kinds of march of a leg: from a free upper end, from a free lower end, from an upper end that is
-held or at a node, and from the seabed up to such an end.
+"""Kinds of march of a leg.
+
+- STANDING: from a free upper end
+- HANGING_DOWN: from a free lower end
+- PULLED: from an upper end that is held or at a node
+- ANCHORED: from the seabed up to an end that is held or at a node
 """
 STAGE, GROUNDED, SHARE, MARCHES, COUNT, SUSPENDED = range(6)
-"""Indices into the state of a leg after its last march: stage of its touchdown, or -1; length on
-the seabed [m]; used fraction of a float's buoyancy; numbers of marches, of nodes, and of nodes off
-the seabed.
+"""Indices into the state of a leg after its last march.
+
+- STAGE: stage of the touchdown, or -1
+- GROUNDED: length on the seabed [m]
+- SHARE: used fraction of a float's buoyancy
+- MARCHES, COUNT, SUSPENDED: number of marches, number of nodes, and number of nodes off the seabed
 """
 EAST, NORTH, TO_EAST, TO_NORTH, TO_UP, HANGS, LIES, SLACK = range(6, 14)
-"""Indices into the state of an anchored leg: vector from its touchdown to its upper end, east and
-north [m]; pull at the touchdown, east, north and up [N]; hanging length of the stage of the
-touchdown, as in `calm.physics.seabed`; length of its part on the seabed, and the excess of this
-length over the distance to the anchor [m].
+"""Indices into the state of an anchored leg.
+
+- EAST, NORTH: vector from the touchdown to the upper end of the leg [m]
+- TO_EAST, TO_NORTH, TO_UP: pull at the touchdown [N]
+- HANGS: hanging length of the stage of the touchdown, as in `calm.physics.seabed` [m]
+- LIES: length of the part on the seabed [m]
+- SLACK: excess of this length over the distance to the anchor [m]
 """
 FREQUENCY, LACKING, YIELD = range(14, 17)
-"""Indices into the state of a strumming leg: frequency of its cables [Hz]; shedding frequency minus
-cable frequency [Hz]; slope of this difference [-].
+"""Indices into the state of a strumming leg.
+
+- FREQUENCY: strumming frequency of the cables [Hz]
+- LACKING: vortex shedding frequency minus strumming frequency [Hz]
+- YIELD: slope of this difference [-]
 """
 COARSE_COUNT, COARSE_SUSPENDED, COARSE_STAGE, COARSE_GROUNDED = range(17, 21)
 """Indices of the state values `COUNT`, `SUSPENDED`, `STAGE` and `GROUNDED` for the shape on coarse
@@ -37,9 +50,12 @@ segments.
 """
 OF_LEG = 21
 OUT = 7
-"""Number of results of a march (`passed`): 0 and 1 are the distance east and north, or the miss of
-an anchored leg; 2 is the height and 3 to 5 are the force at the end of the march; 6 is the height
-above the seabed at which an anchored leg begins.
+"""Number of results of a march, which are the entries of a row of `passed`.
+
+- 0 and 1: distance east and north, or the miss of an anchored leg
+- 2: height of the end of the march
+- 3 to 5: force at the end of the march
+- 6: height above the seabed at which an anchored leg begins
 """
 
 
@@ -233,9 +249,9 @@ def end_height(leg: LegRow, lies: bool, pull: float) -> float:
     """Return the height of the lower end of an anchored leg [m].
 
     A leg on the seabed ends at the seabed; a leg that pulls upwards ends at the top of its anchor.
-    In between, the height is proportional to the pull, up to the weight of a line as long as the
-    anchor is high. The height therefore has no jump, and the solver need not guess where the leg
-    ends.
+    In between, the height is proportional to the pull, up to the weight of a line whose length
+    equals the height of the anchor. The height therefore has no jump, and the solver need not guess
+    where the leg ends.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """Search for approximate equilibria of a moored line.
 
-Depths of the free end are tried downwards from that of the upright line. If the upright line would
-reach out of the water, floats at the surface are also tried.
+Depths of the free end are tried downwards, starting at the top depth of the upright line. If the
+upright line would reach out of the water, floats at the surface are also tried.
 """
 
 from math import isnan, nan, sqrt
@@ -45,8 +45,8 @@ distinguished.
 """
 NEAR = (0.02, 0.2)
 """Additional depths tried near the upright line, as fractions of the first step of `SCAN`. A line
-whose top is in a weak current may miss its anchor, but reach it with the top just below, in a
-stronger current.
+whose top is in a weak current may miss its anchor, but reach the anchor if its top is slightly
+deeper, in a stronger current.
 """
 DIP_SAMPLES = 8
 """Number of depths tried between three samples, to detect a change of sign of the miss."""
@@ -315,7 +315,7 @@ def in_sea(problem: LineProblem, sea: Sea) -> LineProblem:
 
 
 def awash(problem: LineProblem, unknown: Unknown, immersed: float) -> Root:
-    """Find the highest root with a float at the surface, for a line that also closes submerged.
+    """Find the highest root with a float at the surface, for a line with a submerged root, too.
 
     Both equilibria are possible if the float has less drag at the surface, or if the wind acts
     against the current. If a march fails, the root is `found` but its miss is NaN.

@@ -2,8 +2,8 @@
 
 Two independent solutions divide a line into different segments and have different truncation
 errors, which hides a small change. Here every slightly different line keeps the segments of the
-first line and starts at its root. Two or three marches close it, and differences between the shapes
-are derivatives.
+first line, and its search starts at the root of the first line. Two or three marches close the
+line, and differences between the shapes are derivatives.
 """
 
 from collections.abc import MutableSequence, Sequence
@@ -217,7 +217,7 @@ class Nearby:
     def node(self, piece: int, clamp: int = -1) -> int:
         """Return the number of the node at the top of a piece, or at a clamp.
 
-        All lines solved with `shape` or `solved` have the same numbers.
+        All lines solved with `shape` or `solved` have the same node numbers.
         """
         if clamp >= 0:
             return int(np.argmax(self._trace.clamp == clamp))
@@ -245,7 +245,7 @@ class Nearby:
     def solved(self, line: Line, water: Water) -> Solution:
         """Solve a different line on the segments of this line.
 
-        The error estimates are those of this line, since the segments are the same.
+        The error estimates of this line also apply to the result, since the segments are the same.
 
         Parameters
         ----------

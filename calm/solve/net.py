@@ -1,9 +1,13 @@
 """Equilibrium of a net of legs: lines that are joined at nodes.
 
-Each leg is integrated by the march of a single line: from its free end if it has one, else from its
-upper end with an unknown pull, or upwards from the seabed if it is anchored. Further unknowns are
-the depths of the free ends and the positions of the nodes. The conditions are that every leg ends
-at its held position or its node, and that the pulls at every node balance (see
+Each leg is integrated by the march of a single line. The march starts
+
+- at the free end of the leg, if there is a free end;
+- at the touchdown or anchor of an anchored leg, and runs upwards;
+- otherwise at the upper end of the leg, with an unknown pull.
+
+Further unknowns are the depths of the free ends and the positions of the nodes. The conditions are
+that every leg ends at its held position or its node, and that the pulls at every node balance (see
 `calm.solve.leg_marches`).
 """
 
@@ -263,9 +267,9 @@ def settled_from(net: NetSearch, near: NetSolution | None) -> Floats:
     """Return the unknowns of a net in equilibrium, to full precision.
 
     If a net in still water is held by slack legs alone, no force determines the direction in which
-    it drifts. Newton's method then begins with slack legs that pull slightly towards their anchors.
-    This pull is reduced by a factor of ten at a time, or by a smaller factor if the method does not
-    converge. Raise NoEquilibrium if no equilibrium is found.
+    the net drifts. Newton's method then begins with slack legs that pull slightly towards their
+    anchors. This pull is reduced by a factor of ten at a time, or by a smaller factor if the method
+    does not converge. Raise NoEquilibrium if no equilibrium is found.
     """
     try:
         return net.settled(roughly_closed(net, near))
@@ -349,7 +353,7 @@ class NearbyNet:
     def node(self, leg: int, piece: int, clamp: int = -1) -> int:
         """Return the number of the node at the top of a piece of a leg, or at a clamp.
 
-        All slightly different nets solved with this object have the same numbers.
+        All slightly different nets solved with this object have the same node numbers.
         """
         each, trace = self._net.laid[leg], self._net.shape(leg, self._x)
         if clamp >= 0:

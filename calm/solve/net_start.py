@@ -1,7 +1,7 @@
 """Approximate start for a net, from the rest positions of lumped masses on springs.
 
-The march then solves the net accurately from this start. Here, cables stretch by some hundredths,
-and tangential friction is ignored.
+The march then solves the net accurately from this start. In this approximation, cables stretch by a
+few percent, and tangential friction is ignored.
 """
 
 from __future__ import annotations

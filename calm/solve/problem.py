@@ -44,8 +44,11 @@ STARTS, FASTEST, START_ROWS = 41, 4.0, 7
 SHARE_TOLERANCE = 1e-9
 """Tolerance of the used fraction of a surface float's buoyancy."""
 ROUGH, ROUGH_SHARE, ROUGHLY_NEAR = 1e-5, 1e-7, 2e-6
-"""Tolerances in a batch: allowed miss, as a fraction of the water depth; used fraction of buoyancy;
-distance of a load from its water sample, as a fraction of the water depth.
+"""Tolerances in a batch.
+
+- ROUGH: allowed miss, as a fraction of the water depth
+- ROUGH_SHARE: tolerance of the used fraction of buoyancy
+- ROUGHLY_NEAR: distance of a load from its water sample, as a fraction of the water depth
 """
 
 FOUND_SIZE = 32

@@ -321,7 +321,7 @@ def ending_of_audit(off: float, moment: float) -> tuple[int, float]:
 
 
 def stated_errors(problem: LineProblem, found: FoundShape) -> Errors:
-    """Add the errors that a comparison of two step sizes cannot reveal to the error estimates."""
+    """Return error estimates that include the errors hidden from a comparison of two step sizes."""
     closed, span, errors = found.closed, problem.limits.span, found.errors
     unclosed = abs(closed.root.miss) / span + UNSEEN
     record, greatest = problem.work.records[FINE], 0.0

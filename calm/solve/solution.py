@@ -20,7 +20,7 @@ LOOSEST_TOLERANCE = 2e-4
 
 @dataclass(frozen=True)
 class Settings:
-    """Step size of the march, tolerance for the position of its end, and other solver settings.
+    """Settings of the solver: step size and tolerance of the march, friction, and compilation.
 
     Attributes
     ----------
@@ -144,7 +144,7 @@ class Solution:
 
     @property
     def as_marched(self) -> "Solution":
-        """The solution with the shape on fine segments, as it was audited before extrapolation."""
+        """The solution with the shape on fine segments, which was audited before extrapolation."""
         closed = self.marched
         if closed is None:
             return self
@@ -176,7 +176,7 @@ class Solution:
         return 0 if self.line.flexible[0] else int(self.piece_nodes[0, 1])
 
     def piece_at(self, node: int) -> int:
-        """Return the index of the piece that ends at a node or contains it."""
+        """Return the index of the piece that contains a node or ends at the node."""
         return int(self.element_piece[max(node - 1, 0)])
 
 

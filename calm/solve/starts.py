@@ -27,7 +27,9 @@ LOOKED_AT, SURE = 6, 0.3
 remaining knockdown.
 """
 LEAST_CURRENT_GROWTH = 0.25
-"""Growth of the current over the largest knockdown of a line above which this test is made."""
+"""Growth of the current over the largest knockdown of a line, above which the line is tested for a
+lower equilibrium.
+"""
 
 
 def fill_starts(problem: LineProblem) -> int:

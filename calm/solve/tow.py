@@ -1,8 +1,8 @@
 """Steady shape of a line towed by a ship.
 
-A tow is treated as a leg of a net, held at the ship, and `calm.solve.net` closes it. This module
-finds the approximate depth of the free end. It makes rough marches from ever shallower free ends,
-until the upper end of the line reaches the tow point.
+A tow is treated as a leg of a net, held at the ship, and `calm.solve.net` closes this net. This
+module finds the approximate depth of the free end. It makes rough marches from ever shallower free
+ends, until the upper end of the line reaches the tow point.
 """
 
 from dataclasses import dataclass, replace
@@ -185,7 +185,6 @@ class _Marches:
 
     @property
     def shape(self) -> Trace:
-        """Shape of the last march."""
         return self.net.shape(0, np.zeros(1))
 
     def miss(self, _: None, depth: float) -> float:

@@ -1,9 +1,9 @@
 """Choice between the interpreted solver and the solver compiled by LLVM.
 
-Both give the same digits. Compiled code is loaded from the cache as soon as this saves time. If the
-cache has none, the solver is compiled, which takes less than a second, as soon as this saves time.
-`CALM_COMPILED=never` and `always`, and the attribute `compiled` of `Settings`, override this
-choice.
+Both solvers give the same digits. Compiled code is loaded from the cache as soon as this saves
+time. If the cache contains no compiled code, the solver is compiled as soon as this saves time.
+Compilation takes less than a second. `CALM_COMPILED=never` and `always`, and the attribute
+`compiled` of `Settings`, override this choice.
 """
 
 import os
@@ -29,8 +29,7 @@ TYPICAL_PARTS = 8
 class CompiledPart(Enum):
     """A part of the solver that is compiled separately.
 
-    The value of a member is the name of a function. Of all functions in this part of the solver,
-    this function is compiled last.
+    The value of a member is the name of the function that is compiled last in this part.
     """
 
     LINE = "run_search"
@@ -49,8 +48,7 @@ class _Pace:
         self.announced = self.solved = self.work = self.checked_at = 0.0
         self.compiled = False
 
-    def consider(self) -> None:
-        """Switch to compiled code if that pays."""
+    def switch_if_worthwhile(self) -> None:
         if self.compiled:
             return
         work = max(self.announced, self.work)
@@ -69,7 +67,7 @@ def expect_many(lines: float, solver: CompiledPart = CompiledPart.LINE) -> None:
     pace = _paces[solver]
     pace.announced = pace.solved + lines
     if _may_choose():
-        pace.consider()
+        pace.switch_if_worthwhile()
 
 
 def runs_compiled(
@@ -98,7 +96,7 @@ def count_lines(lines: float, solver: CompiledPart, work: float | None = None) -
     pace.solved += lines
     pace.work += lines if work is None else work
     if _may_choose():
-        pace.consider()
+        pace.switch_if_worthwhile()
 
 
 def may_compile() -> bool:

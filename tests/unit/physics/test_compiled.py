@@ -45,7 +45,7 @@ def broken(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     def refuse(*_: Any, **__: Any) -> Any:
         raise RuntimeError("No available targets are compatible")
 
-    kept = compiled.fault, compiled._machine, compiled._machine_name
+    kept = compiled.fault, compiled._target_machine, compiled._machine_name
     monkeypatch.setattr(llvmlite.binding.Target, "from_default_triple", refuse)
     for each in kept:
         each.cache_clear()
