@@ -72,8 +72,8 @@ SHARE_REACH = 0.5
 SHARE_STEP = 0.4  # maximum change in the logarithm of an error share in one step
 LINE_HOURS = 3.0  # correlation time of the error of a stretch [h]
 TIDE_HOURS = 2.4  # time in which the correlation of a semidiurnal tide falls to 1/e [h]
-# typical hourly step of datum and offsets [m]; steps and initial values have Student's t
-# distribution with one degree of freedom, which allows rare steps that are many times as large
+# typical hourly step of datum and places [m]; the steps have Student's t distribution with one
+# degree of freedom, which allows rare steps that are many times as large
 STEP = 0.02
 # weight 1 / (1 + n) of the square of an unknown in its variance, for n degrees of freedom. The
 # prior deviation of a place is 2 cm. The variance of a place begins at 1 m², and shrinks unless the
