@@ -170,7 +170,7 @@ def length(before: str = "", *, towed: bool = False) -> Check:
     def check(text: str) -> Reading:
         fit, measured = _FIT.fullmatch(text.strip()), _AT_LOAD.fullmatch(text.strip())
         if fit is None and measured is not None:
-            return _joined(plain(measured[1]), load(measured[2]))
+            return _length_at_load(plain(measured[1]), load(measured[2]))
         if fit is None:
             return plain(text)
         if not fit[1]:
@@ -182,8 +182,7 @@ def length(before: str = "", *, towed: bool = False) -> Check:
     return check
 
 
-def _joined(long: Reading, load: Reading) -> Reading:
-    """Combine the interpretations of a length and of the load at which it was measured."""
+def _length_at_load(long: Reading, load: Reading) -> Reading:
     offers = [each.offer or each.text for each in (long, load)]
     offer = " at ".join(offers) if long.offer or load.offer else None
     complaint = long.complaint or load.complaint
