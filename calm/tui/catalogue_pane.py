@@ -93,7 +93,7 @@ class ComponentList(TableCells, can_focus=False):
 
     @property
     def columns(self) -> list[TableColumn]:
-        """Columns for the ids, for as many values as fit, and for the names."""
+        """Columns for id, name, and as many values as fit the width."""
         width = self.scrollable_content_region.width
         id_width = max(min(self._longest, width - _LEAD), 0)
         columns, start = [TableColumn("id", "component", _LEAD, id_width)], _LEAD + id_width + 1

@@ -54,7 +54,7 @@ class EditableTable(Vertical):
 
     @property
     def is_typing(self) -> bool:
-        """Whether a typed value has not been written yet."""
+        """Whether the editor contains typed text that is not written yet."""
         return self.editor.is_typing
 
     def open_editor(

@@ -159,8 +159,9 @@ def distance(before: str = "") -> Check:
 def length(before: str = "", *, towed: bool = False) -> Check:
     """Return a check for the length of a piece.
 
-    The text is a length, a length with the load at which it was measured (``98 m at 2 kN``), or
-    ``fit`` with the depth to reach. A bare number gets the unit of the previous text, `before`.
+    The text is a length, a length with the load at which the length was measured
+    (``98 m at 2 kN``), or ``fit`` with the required depth of the top (if `towed`, of the lower
+    end). A bare number gets the unit of the previous text, `before`.
     """
     plain = quantity(POSITIVE_LENGTH, usual_unit=unit_of(before))
     depth = quantity(QuantityField("length") if towed else LENGTH, usual_unit=unit_of(before))

@@ -2,6 +2,7 @@
 
 The fields of a form are created from the keys of a pydantic model. Values of the file are converted
 to text and back.
+
 A structured value is typed as YAML in brackets, such as `[98 m, 104 m]`. A list of rows is edited
 as a table, whose text is also YAML.
 """

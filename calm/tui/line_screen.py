@@ -127,7 +127,7 @@ class LineScreen(screen.DraftScreen):
     # components from the catalogue
 
     def search(self, purpose: Purpose) -> None:
-        """Search the catalogue for a component for the row under the cursor."""
+        """Open the catalogue to find a component for the row under the cursor."""
         self.remove_class("-zoomed")
         self.add_class("-searching")
         spot = self.line.table.spot

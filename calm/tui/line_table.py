@@ -189,12 +189,12 @@ _DEFAULT_WIDTH = 9
 _MIN_TEXT, _PREFERRED_TEXT = 9, 12
 _MAX_COMPONENT, _MAX_LABEL, _MAX_LENGTH, _MAX_LEG = 30, 40, 13, 10
 LEAD = 4
-"""Number of cells before the first column, for cursor, mark or state, sign, and a blank."""
+"""Width before the first column [cells]: cursor, mark or state, role symbol, blank."""
 
 
 @dataclass(frozen=True)
 class TableRow:
-    """Row of a piece or a clamp, as displayed.
+    """Displayed row of a piece or a clamp.
 
     Attributes
     ----------
@@ -270,7 +270,7 @@ def _heading(figure: ResultColumn) -> str:
 
 
 def _text_room(shown: list[str], width: int, fixed: dict[str, int]) -> int:
-    """Return the width that remains for the columns component and label [cells]."""
+    """Return the width that remains for the component and label columns [cells]."""
     return width - LEAD - len(shown) - sum(fixed.get(name, 0) for name in shown)
 
 

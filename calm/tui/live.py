@@ -59,7 +59,7 @@ class View:
     findings : findings of the design check; empty for a tow
     tighter : findings in other situations in which the utilisation is higher than in `findings`
     environments : names of the environments besides the default environment
-    rows : results of all rows in file order; each piece is followed by its clamps
+    rows : results of each piece and clamp in file order; clamps follow their piece
     complete : whether `findings` has all findings of `calm check` (see `judge_fully`); also true
         for a solved tow, which has no findings
     cases : results in each environment; empty before the full check
@@ -88,11 +88,7 @@ class View:
 
     def is_of(self, text: str, path: Path | None, environment: str | None) -> bool:
         """Return whether the view belongs to a given text, path and environment."""
-        return (self.text, self.path, self.environment) == (
-            text,
-            _path_or_placeholder(path),
-            environment,
-        )
+        return (self.text, self.path, self.environment) == (text, _as_path(path), environment)
 
     @cached_property
     def items(self) -> tuple[editing.LineItem, ...]:
@@ -137,7 +133,7 @@ def judge(
         exception is raised, whatever the text contains.
     """
     memory = Memory() if keep is None else keep.memory
-    view = View(text, _path_or_placeholder(path), environment, memory=memory)
+    view = View(text, _as_path(path), environment, memory=memory)
     try:
         return _judged(view, catalogs)
     except Exception as error:
@@ -146,7 +142,7 @@ def judge(
         return replace(view, failure=internal_failure(error))
 
 
-def _path_or_placeholder(path: str | Path | None) -> Path:
+def _as_path(path: str | Path | None) -> Path:
     # relative file names in the text are resolved from this path
     return Path.cwd() / UNNAMED if path is None else Path(path)
 
@@ -177,7 +173,8 @@ def judge_fully(view: View, catalogs: Sequence[str | Path] = ()) -> View:
 class HeldLine:
     """A line solved in one environment and situation, with an anchor that holds any load.
 
-    `when` names the environment and the situation if they differ from those of the view.
+    `when` names the environment and the situation, except the environment of the view and the
+    situation as given.
     """
 
     when: str
