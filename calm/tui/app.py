@@ -307,7 +307,10 @@ class BuildApp(App[int]):
     # unsaved work, and the exit
 
     def keep(self) -> str:
-        """Save a backup copy of unsaved work; return the reason for a failure, or ""."""
+        """Save a backup copy of unsaved work.
+
+        Return the reason if this fails, otherwise "".
+        """
         try:
             self.session.note_unsaved().keep()
         except (CalmError, OSError) as error:
@@ -338,7 +341,10 @@ class BuildApp(App[int]):
             self.screen.settle()
 
     def save_copy_on_exit(self) -> None:
-        """Save a backup copy, unless the user has quit; record a failure in `not_kept`."""
+        """Save a backup copy, unless the user has quit.
+
+        If this fails, `not_kept` gives the reason.
+        """
         if not self._is_left:
             self.not_kept = self.keep()
 

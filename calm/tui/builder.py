@@ -34,7 +34,7 @@ _MOST_STEPS = 9
 
 
 class BuilderScreen(ComparingScreen):
-    """Main screen with the line; its commands open all other screens."""
+    """Main screen with the line, and with the commands that open all other screens."""
 
     BINDINGS = bindings("anywhere")
 

@@ -137,7 +137,10 @@ number = quantity(QuantityField("number"))
 
 
 def count(text: str) -> Reading:
-    """Check a number of pieces, which must be whole; an empty text means 1."""
+    """Check a number of pieces, which must be whole.
+
+    An empty text means 1.
+    """
     tidy = text.strip().lstrip("x×* ")
     if not tidy:
         return Reading("1")

@@ -128,7 +128,7 @@ def _reading_of(model: type[BaseModel], name: str, needed: bool, text: str) -> R
 
 
 def _columns(members: tuple[Any, ...]) -> tuple[FormColumn, ...]:
-    """Return the table columns of a list of models or of fixed-length rows, else ()."""
+    """Return the table columns for a list of models or fixed-length rows, else ()."""
     if len(members) != 1 or get_origin(members[0]) is not tuple:
         return ()
     row = get_args(members[0])[0]

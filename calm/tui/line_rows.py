@@ -148,7 +148,10 @@ _NO_LENGTH = "The component determines the length"
 
 @dataclass(frozen=True)
 class LineCell:
-    """Cell of the line table; edits of the cell change the draft of the workspace."""
+    """Cell of the line table.
+
+    Edits of the cell change the draft of the workspace.
+    """
 
     workspace: Workspace
     spot: Place
