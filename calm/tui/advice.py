@@ -1,7 +1,7 @@
-"""Suggested changes to the file that correct findings of the design check.
+"""Suggested changes to a mooring file that correct findings of the design check.
 
-This module does not depend on the screen. The search of `calm size` finds the changes that meet a
-target.
+This module has no user interface. Changes that meet a target are found by the search of
+`calm size`.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -36,7 +36,7 @@ class Offer:
     title : purpose and effect of the change
     label : name of the change in the history
     make : function that applies the change to a draft and returns the new draft. The function may
-        solve for a value, and raises `CalmError` if the change does not help.
+        solve the line to find a value, and raises `CalmError` if the change does not help.
     """
 
     title: str
@@ -54,28 +54,28 @@ def single(view: View) -> LegResult | None:
 
 
 def offers(view: View, catalogue: Catalogue, catalogs: Sequence[str | Path] = ()) -> list[Offer]:
-    """Suggest changes that remove failures and warnings of a line, for the most severe one first.
+    """Suggest changes that remove failures and warnings of a line, in order of severity.
 
-    If the line has no anchor or needs a heavier anchor, the line is solved in every situation.
+    If the line has no anchor or needs a heavier anchor, the line is solved in every environment and
+    situation.
 
     Parameters
     ----------
     catalogue : components from which an anchor is chosen
     catalogs : catalogue files of the user, needed to read the line in its other environments
     """
-    anchors = [*_anchors(view, catalogue, catalogs)] if _needs_an_anchor(view) else []
+    anchors = [*_anchors(view, catalogue, catalogs)] if _needs_new_anchor(view) else []
     grave = sorted((e for e in view.findings if e.state in _GRAVE), key=lambda each: each.rank)
     listed = [] if any(map(_is_of_anchor, grave)) else [*anchors]
     for finding in grave:
         if _is_of_anchor(finding):
             listed += anchors
         elif view.result is not None and single(view) is not None:
-            listed += _for(finding, view.result.design)
+            listed += _offers_for(finding, view.result.design)
     return [*{offer.title: offer for offer in listed}.values()]
 
 
-def _needs_an_anchor(view: View) -> bool:
-    """Return whether the anchor of a single moored line is missing or too light."""
+def _needs_new_anchor(view: View) -> bool:
     if (
         view.file is None
         or view.file.legs
@@ -130,18 +130,17 @@ def sized(mooring: Design, target: str, change: str) -> Offer:
     return Offer(f"{change} so that {target}", f"{change} for {target}", make)
 
 
-def _for(finding: Finding, mooring: Design) -> Iterator[Offer]:
+def _offers_for(finding: Finding, mooring: Design) -> Iterator[Offer]:
     if finding.rule == "backup" and finding.limit is not None and finding.value is not None:
-        yield from _floats(mooring, finding, finding.limit - finding.value)
+        yield from _more_backup_floats(mooring, finding, finding.limit - finding.value)
     elif finding.rule in ("knockdown", "excursion", "tilt", "depth-rating") and finding.limit:
-        yield from _buoyancy(mooring, finding)
+        yield from _more_buoyancy(mooring, finding)
 
 
 def _anchors(view: View, catalogue: Catalogue, catalogs: Sequence[str | Path]) -> Iterator[Offer]:
-    """Suggest the lightest anchor that holds in every environment and situation.
+    """Suggest the lightest anchor of the catalogue that holds in every environment and situation.
 
-    It is taken from the catalogue. For an anchor that the catalogue of CALM does not define, a
-    weight is also suggested.
+    For an anchor that CALM's own catalogue does not define, also suggest a weight.
     """
     loads = view.held or held_lines(view, catalogs)
     if view.file is None or not loads:
@@ -182,13 +181,10 @@ def _anchors(view: View, catalogue: Catalogue, catalogs: Sequence[str | Path]) -
 
 
 def _anchors_of(catalogue: Catalogue) -> Iterator[tuple[str, Anchor]]:
-    """Yield the anchors whose weight in water is known.
-
-    If a product has several entries, only the recommended entry is considered.
-    """
     for id in catalogue.ids():
         entry = catalogue.entry(id)
         fields = {} if entry is None else entry.section.data
+        # a definition with `prefer` names a better definition of the same product
         if fields.get("kind") == "anchor" and "prefer" not in fields:
             with suppress(CalmError):  # a component of the user's catalogue with a mistake
                 component = catalogue.get(id)
@@ -207,8 +203,7 @@ def _no(reason: str) -> Callable[[Draft], Draft]:
     return make
 
 
-def _floats(mooring: Design, finding: Finding, lacking: float) -> Iterator[Offer]:
-    """Suggest more floats between a break and the release."""
+def _more_backup_floats(mooring: Design, finding: Finding, lacking: float) -> Iterator[Offer]:
     file, release = mooring.file, mooring.file.release
     broken = next((p.index for p in file.pieces if p.place == finding.place), -1)
     if release is None:
@@ -223,13 +218,9 @@ def _floats(mooring: Design, finding: Finding, lacking: float) -> Iterator[Offer
 
 
 def _put(item: int, key: str, value: str) -> Callable[[Draft], Draft]:
-    """Return a change that sets a key of an item.
-
-    A new component (`use`) also deletes the `weight` of the item.
-    """
-
     def make(draft: Draft) -> Draft:
         made = draft.put(item, key, value)
+        # the `weight` in the item is that of the previous component
         if key == "use" and "weight" in draft.items[item].values:
             made = made.put(item, "weight", None)
         return made
@@ -242,8 +233,7 @@ def _is_float(piece: Piece) -> bool:
     return is_one and piece.component.role == "float" and piece.component.net_buoyancy > 0.0
 
 
-def _buoyancy(mooring: Design, finding: Finding) -> Iterator[Offer]:
-    """Suggest more buoyancy of the highest float, to reduce a knockdown, an excursion or a tilt."""
+def _more_buoyancy(mooring: Design, finding: Finding) -> Iterator[Offer]:
     floats = [piece for piece in mooring.file.pieces if _is_float(piece)]
     if not floats:
         return
@@ -256,7 +246,7 @@ def _buoyancy(mooring: Design, finding: Finding) -> Iterator[Offer]:
 
 
 def differences(before: View, after: View) -> list[str]:
-    """Describe how a change affects values and the number of findings, each as ``from → to``."""
+    """List the changed values and counts of findings, such as ``warnings 3 → 1``."""
     effects = []
     one, other = single(before), single(after)
     if one is not None and other is not None:

@@ -1,6 +1,6 @@
-"""The application, which handles key presses in order, runs workers, and ends the builder.
+"""The Textual application of the line builder.
 
-The screens display the draft.
+The application handles key presses in order, starts workers, and saves backup copies.
 """
 
 import os
@@ -42,10 +42,11 @@ class BuildApp(App[int]):
     together over a slow connection, would go to the widget that has the focus on their arrival. For
     example, they would go to the line instead of the field that the first key opens.
 
-    A key counts as handled once all message queues that it may have filled are empty. Each widget
-    handles messages in the order of its queue. A call that is posted after a key therefore runs
-    only when the widget has handled the key. A second round waits for messages that the widgets
-    sent to each other. Rounds are repeated until all queues are empty.
+    A key counts as handled once all message queues that the key may have filled are empty. To wait
+    for this, the application posts a call to each of these queues in turn. A queue is handled in
+    order, so the call runs only when its widget has handled the key. A second round of calls waits
+    for messages that the widgets sent to each other. Rounds are repeated until all queues are
+    empty.
 
     Parameters
     ----------
@@ -55,7 +56,7 @@ class BuildApp(App[int]):
 
     Attributes
     ----------
-    not_kept : reason why unsaved work could not be kept at the end; empty if there was no failure
+    not_kept : reason why unsaved work could not be backed up on exit; empty without a failure
     has_keys_waiting : whether any key has not been handled yet
     """
 
@@ -101,7 +102,6 @@ class BuildApp(App[int]):
     # the order of keys
 
     async def on_event(self, event: events.Event) -> None:
-        """Queue keys, pastes and mouse presses until earlier ones are handled."""
         is_done = isinstance(event, events.InputEvent | events.Paste)
         if not is_done or event.is_forwarded or isinstance(event, events.MouseMove):
             await super().on_event(event)
@@ -119,21 +119,17 @@ class BuildApp(App[int]):
             self._wait_for_listeners(before)
 
     def _listeners(self) -> list[MessagePump]:
-        """Return the widgets that a key press may affect.
-
-        They are the focused widget, its ancestors, and the screen. Screens below are excluded, as
-        each message would repaint the whole screen. Lists are included, as they post their
-        selection without having the focus.
-        """
+        """Return the widgets and screens that a key press may affect."""
         around = [] if self.focused is None else list(self.focused.ancestors_with_self)
+        # the top screen only: a message to a screen below would repaint the whole terminal;
+        # lists post their selection without having the focus
         lists = [each for top in self.screen_stack[-1:] for each in top.query(OptionList)]
         return list(dict.fromkeys([*around, *lists, *self.screen_stack[-1:], self]))
 
     def _wait_for_listeners(self, listeners: list[MessagePump]) -> None:
-        """Wait until all listeners have handled their messages, skipping removed widgets."""
         while listeners:
             first, *others = listeners
-            if first.call_later(self._wait_for_listeners, others):
+            if first.call_later(self._wait_for_listeners, others):  # false for a removed widget
                 return
             listeners = others
         self._waits += 1
@@ -149,23 +145,15 @@ class BuildApp(App[int]):
     # the terminal
 
     def get_default_screen(self) -> Screen[Any]:
-        """Return the line screen as the bottom screen of the stack.
-
-        Textual would also paint any screen below the line screen.
-        """
+        # as the bottom screen of the stack: Textual would also paint a screen below the builder
         return self.builder
 
     def on_mount(self) -> None:
-        """Start timers; solve the line and read the catalogue after the first frame."""
         self.app_resume_signal.subscribe(self, lambda _: self.action_repaint())
-        self.call_after_refresh(self._begin)
+        self.call_after_refresh(self._begin)  # once the line is on the screen
         self.set_interval(_DISK_INTERVAL, self.saving.check_external_change)
 
     def _begin(self) -> None:
-        """Read the catalogue, solve the line, and show the messages for the start.
-
-        This begins after the line is on the screen.
-        """
         self._read_catalogue()
         self.judging.ask()
         if self._offered is not None:
@@ -180,18 +168,10 @@ class BuildApp(App[int]):
             self.tell(f"{self.session.name} is open elsewhere{who}, {what}", wrong=True)
 
     def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:
-        """Yield the command to choose colours.
-
-        The other commands of Textual have keys in the builder.
-        """
+        # the other commands of Textual have keys in the builder
         yield SystemCommand("colours", "Choose other colours.", self.action_change_theme)
 
     def get_line_filters(self) -> Sequence[LineFilter]:
-        """Return the filters for the lines of the screen.
-
-        If colours are off, a single filter removes them. Otherwise, the filters are those of
-        Textual, followed by a filter that makes text legible.
-        """
         if self.no_color:
             return [_COLOURLESS]
         theme = self.current_theme
@@ -199,24 +179,20 @@ class BuildApp(App[int]):
         return [*super().get_line_filters(), own]
 
     def get_driver_class(self) -> type[Driver]:
-        """Return a driver class for this terminal; the driver sends only changed cells."""
         return self.output.driver_class(super().get_driver_class())
 
     @cached_property
     def output(self) -> TerminalOutput:
-        """Output through which the driver writes to the terminal."""
+        """Output of the driver, which sends only changed cells to the terminal."""
         return TerminalOutput()
 
     def on_cursor_position(self) -> None:
-        """Send the next frame, since a reported position means that the last frame is displayed."""
-        self.output.answered()
+        self.output.answered()  # the terminal reports its cursor once the last frame is displayed
 
     def on_resize(self) -> None:
-        """Send the whole screen, since the terminal may have moved the displayed text."""
-        self.output.clear()
+        self.output.clear()  # the terminal may have moved the displayed text
 
     def action_repaint(self) -> None:
-        """Redraw the whole screen."""
         self.output.forget()
         self.screen.refresh()
 
@@ -233,7 +209,7 @@ class BuildApp(App[int]):
         return [each for each in self.screen_stack if isinstance(each, DraftScreen)]
 
     def is_settled(self) -> bool:
-        """Accept the value being typed; if this fails, show a message and return False."""
+        """Accept the value being typed; return False, with a message, if the value is invalid."""
         return not isinstance(self.screen, DraftScreen) or self.screen.settle()
 
     def show_replaced_draft(self, message: str) -> None:
@@ -244,34 +220,29 @@ class BuildApp(App[int]):
         self._edited()
 
     def action_save(self) -> None:
-        """Save, asking for a file name if needed."""
         if self.is_settled():
             self.saving.save()
 
     def action_save_as(self) -> None:
-        """Save under another name."""
         if self.is_settled():
             self.saving.save_as()
 
     async def action_quit(self) -> None:
-        """Quit, after asking what to do with unsaved changes."""
         if self.is_settled():
             self.saving.quit()
 
     def action_command_palette(self) -> None:
-        """Open the command palette, in which commands are found by name."""
         if not isinstance(self.screen, CommandPalette):
             self.push_screen(palette.Commands(id="--command-palette"))
 
     def action_help(self) -> None:
-        """Show all keys."""
         self.push_screen(dialogs.LongText(key_table.all_keys()))
 
     # judging
 
     @property
     def is_idle(self) -> bool:
-        """Whether the displayed line has been solved and no worker is running."""
+        """Whether the draft has been solved and checked, and the catalogue has been read."""
         return self.judging.is_idle and self._is_catalogue_read
 
     def _edited(self) -> None:
@@ -300,7 +271,7 @@ class BuildApp(App[int]):
     def open_text_if_invalid(self, *, as_judged: bool = False) -> None:
         """Open the text editor if the draft cannot be parsed.
 
-        With `as_judged`, the editor also opens if the last view has mistakes.
+        With `as_judged`, the editor also opens if the last check found mistakes in the text.
         """
         judged = self.workspace.view if as_judged and self.screen is self.builder else None
         if (judged and judged.problems) or self.session.draft.problems:
@@ -336,7 +307,10 @@ class BuildApp(App[int]):
     # unsaved work, and the exit
 
     def keep(self) -> str:
-        """Save unsaved work to its backup copy; return the reason if this fails, otherwise ""."""
+        """Save a backup copy of unsaved work.
+
+        Return the reason if this fails, otherwise "".
+        """
         try:
             self.session.note_unsaved().keep()
         except (CalmError, OSError) as error:
@@ -346,18 +320,18 @@ class BuildApp(App[int]):
     def _autosave(self) -> None:
         self._autosaving = None
         if not self._is_left:
-            self._keep_aside(self.session.note_unsaved())
+            self._back_up(self.session.note_unsaved())
 
+    # in a thread, so that a slow disk does not block keys
     @work(thread=True, group="keeping", exit_on_error=False)
-    def _keep_aside(self, file: editing.WorkingFile) -> None:
-        """Back up unsaved work in a thread, so that a slow disk does not block keys."""
+    def _back_up(self, file: editing.WorkingFile) -> None:
         try:
             file.keep()
         except (CalmError, OSError) as error:
             self.call_later(self.tell, f"Unsaved work cannot be stored: {error}", wrong=True)
 
     def on_unmount(self) -> None:
-        """Save unsaved work to its backup copy, even after a failure or when the page is closed."""
+        # Textual also unmounts after a failure, and when the page is closed
         self.saving.presence.announce(None)
         self.save_copy_on_exit()
 
@@ -367,7 +341,10 @@ class BuildApp(App[int]):
             self.screen.settle()
 
     def save_copy_on_exit(self) -> None:
-        """Save a backup copy unless the user has quit; if this fails, `not_kept` is the reason."""
+        """Save a backup copy, unless the user has quit.
+
+        If this fails, `not_kept` gives the reason.
+        """
         if not self._is_left:
             self.not_kept = self.keep()
 
@@ -376,14 +353,11 @@ class BuildApp(App[int]):
         self._is_left, self._ends_at = True, time.monotonic() + 1.0
         if not self.session.changed:
             self.keep()  # removes an outdated copy
-        self._exit_answered()
+        self._exit_once_answered()
 
-    def _exit_answered(self) -> None:
-        """End once the terminal has answered.
-
-        The shell would otherwise read the answer as keys.
-        """
+    def _exit_once_answered(self) -> None:
+        # the shell would read a late answer of the terminal as keys
         if self.output.is_out and self._ends_at > time.monotonic():
-            self.set_timer(0.02, self._exit_answered)
+            self.set_timer(0.02, self._exit_once_answered)
         else:
             self.exit(0)

@@ -1,4 +1,4 @@
-"""Main screen: the line, its picture and its verdict, and the catalogue on request."""
+"""Main screen of the builder, with the commands that open the other screens."""
 
 from functools import partial
 from typing import Any
@@ -34,27 +34,24 @@ _MOST_STEPS = 9
 
 
 class BuilderScreen(ComparingScreen):
-    """The main screen with the line, from which all other screens open."""
+    """Main screen with the line, and with the commands that open all other screens."""
 
     BINDINGS = bindings("anywhere")
 
     def on_resize(self) -> None:
-        """Fit the title to the new width."""
         self.show_title()
 
     def on_mount(self) -> None:
-        """Show the line and give it the focus."""
         self.line.show_rows()
         self.line.table.focus()
 
     def on_key(self, event: Key) -> None:
-        """Clear the message in the key bar."""
         if not self.line.editor.is_open:
             self.tell("")
 
     @on(DescendantFocus)
     def show_keys(self) -> None:
-        """Show the keys of the focused widget."""
+        """Show the keys of the focused widget in the key bar."""
         places: dict[Any, str] = {CellEditor: "cell", VerdictPane: "verdict", Picture: "anywhere"}
         place = places.get(type(self.focused), "line")
         if self.focused is not None and self.catalogue in self.focused.ancestors_with_self:
@@ -62,28 +59,21 @@ class BuilderScreen(ComparingScreen):
         self.query_one(KeyBar).show_keys(hints(place), beside_message=place == "catalogue")
 
     def action_suspend(self) -> None:
-        """Suspend the builder to the shell.
-
-        If a value is being typed or if there is no shell, undo the last change instead.
-        """
         if self.is_typing or self.app.is_web or self.app.is_headless:
             self.action_undo()
         else:
             self.app.action_suspend_process()
 
     def action_picture(self, tab: Tab) -> None:
-        """Show the picture of a tab."""
         self.pictures.tab = tab
 
     def action_zoom(self) -> None:
-        """Show the picture on the whole screen, or restore the screen."""
         self.remove_class("-searching")
         self.toggle_class("-zoomed")
         is_zoomed = self.has_class("-zoomed")
         (self.query_one(Picture) if is_zoomed else self.line.table).focus()
 
     def action_next_environment(self) -> None:
-        """Show the line in the next environment of the file."""
         standing = self.session.standing
         if len(standing.environments) == 1:
             self.tell("The file has one environment; add others on the water screen (w)")
@@ -95,13 +85,11 @@ class BuilderScreen(ComparingScreen):
         self.workspace.edited()
 
     def action_verdict(self) -> None:
-        """Move the focus to the lines of the verdict."""
         self.remove_class("-zoomed", "-searching")
         self.add_class("-reading")
         self.verdict.focus()
 
     def action_figures(self) -> None:
-        """Ask the user for all missing component values, and write the answers to the file."""
         session = self.session
         if not self.settle():
             return
@@ -130,7 +118,6 @@ class BuilderScreen(ComparingScreen):
             self.tell(f"All component values are present so far. {PENDING}")
 
     def action_begin(self) -> None:
-        """Start a mooring from a template; the line must be empty."""
         session = self.session
         if session.draft.items:
             self.tell("The line is not empty; templates are for new files")
@@ -146,7 +133,6 @@ class BuilderScreen(ComparingScreen):
         choose(self.app, Question("Begin with", text, answers))
 
     def action_history(self) -> None:
-        """List the changes made, and return to the state before a chosen change."""
         steps = self.session.history
         if not self.settle():
             return
@@ -168,11 +154,9 @@ class BuilderScreen(ComparingScreen):
         choose(self.app, Question("Changes", text, answers))
 
     def action_search(self, purpose: Purpose) -> None:
-        """Search the catalogue."""
         self.search(purpose)
 
     def action_define(self) -> None:
-        """Define a new component in the file, and add it to the line."""
         from calm.tui.component_screen import ComponentScreen
 
         index, session = self.workspace.index, self.session
@@ -190,7 +174,6 @@ class BuilderScreen(ComparingScreen):
         ask(self.app, ComponentScreen(listed, session.components), take)
 
     def action_change_component(self) -> None:
-        """Edit the component of the row in a form; keys without a field in the form are kept."""
         from calm.tui.component_screen import ComponentScreen
 
         spot, session = self.line.table.spot, self.session
@@ -208,6 +191,7 @@ class BuilderScreen(ComparingScreen):
 
         def take(defined: Defined) -> None:
             place = "components", id
+            # keys without a field in the form are kept
             self.line.attempt(
                 lambda: session.do(written(session.draft, defined[1], place), f"change {id}")
             )
@@ -215,13 +199,11 @@ class BuilderScreen(ComparingScreen):
         ask(self.app, ComponentScreen(begun=(id, values)), take)
 
     def action_water(self) -> None:
-        """Open the screen for depth, density, current and wind."""
         from calm.tui.water_screen import WaterScreen
 
         self.app.push_screen(WaterScreen(self.workspace), self._back)
 
     def action_text(self) -> None:
-        """Open the file in the text editor."""
         from calm.tui.text_screen import TextScreen
 
         spot, session = self.line.table.spot, self.session
@@ -236,7 +218,6 @@ class BuilderScreen(ComparingScreen):
         self.workspace.edited()
 
     def action_sheet(self, name: str) -> None:
-        """Edit a group of top-level keys of the file on a sheet."""
         session, view = self.session, self.workspace.view if self.workspace.is_fresh else None
         part = part_of_row(None if view is None else view.file, self.line.table.spot)
         sheet, label, changed = sheet_of(name, session.draft, part)
@@ -247,7 +228,6 @@ class BuilderScreen(ComparingScreen):
         ask(self.app, sheet, take)
 
     def action_settings(self) -> None:
-        """Choose a section of the file, and edit the section in a form."""
         models = MooringKeys.model_fields
         answers = numbered(
             (f"{name}: {models[name].description}", partial(self.action_sheet, name))

@@ -75,7 +75,7 @@ class ComponentList(TableCells, can_focus=False):
         found : components to list, in display order
         index : search index of the catalogue
         by : quantity whose column must be visible
-        favourites : ids of favourites
+        favourites : ids of the favourite components
         """
         before, columns = self.rows, self.columns
         cursor, like = self.cursor, (self._index, self._favourites)
@@ -93,7 +93,7 @@ class ComponentList(TableCells, can_focus=False):
 
     @property
     def columns(self) -> list[TableColumn]:
-        """Columns for the ids, for as many values as fit, and for the names."""
+        """Columns for id, name, and as many values as fit the width."""
         width = self.scrollable_content_region.width
         id_width = max(min(self._longest, width - _LEAD), 0)
         columns, start = [TableColumn("id", "component", _LEAD, id_width)], _LEAD + id_width + 1
@@ -106,37 +106,28 @@ class ComponentList(TableCells, can_focus=False):
         return [*columns, TableColumn("name", "", start, max(width - start, 0))]
 
     def text_of(self, number: int, column: TableColumn) -> str:
-        """Return the text of a cell, which is an id, a value or a name.
-
-        A name that is too long for the column appears only on the card.
-        """
         each: Listed = self.rows[number]
         if column.name == "id":
             return each.id
         if column.name == "name":
+            # a name that is too long for the column appears only on the card
             return each.name if cell_len(each.name) <= column.width else ""
         figures = {} if self._index is None else self._index.figures(each.id)
         figure = next(each for each in COLUMNS if each.key == column.name)
         return figure.shown(figures.get(column.name))
 
     def lead(self, number: int, style: Style) -> list[Segment]:
-        """Return the symbols in front of a row for the cursor, a favourite and the role."""
         each: Listed = self.rows[number]
         cursor = theme.CURSOR if number == self.cursor else " "
         star = theme.FAVOURITE if each.id in self._favourites else " "
         return [Segment(f"{cursor}{star}{theme.ROLES.get(each.role, ' ')} ", style)]
 
     def row_style(self, number: int) -> Style:
-        """Return the style of a row; the row under the cursor is always marked."""
         if number != self.cursor:
             return self.rich_style
         return self.rich_style + self.look("component-list--cursor")
 
     def cell_style(self, number: int, column: TableColumn, style: Style) -> Style:
-        """Return the style of a cell.
-
-        Ids and names have styles of their own; values have the style of the row.
-        """
         look = {"id": "own" if self.rows[number].own else "id", "name": "name"}.get(column.name)
         if look is None:
             return style
@@ -155,9 +146,9 @@ _TITLES = {
 
 
 class CataloguePane(Vertical):
-    """Pane with a search field, the list of components found, and the card of one component.
+    """Pane with a search field, the components found, and the card of the chosen component.
 
-    When a cable is added, the pane asks for the length; when a clamp is added, for the position.
+    The pane requests the length of a new cable or chain, and the position of a new clamp.
 
     Parameters
     ----------
@@ -204,7 +195,6 @@ class CataloguePane(Vertical):
         self._target = ""
 
     def compose(self) -> ComposeResult:
-        """Yield the title, the search field, and the list with its card."""
         yield Static(id="catalogue-title", markup=False)
         yield self.search
         with Horizontal(id="catalogue-found"):
@@ -286,14 +276,12 @@ class CataloguePane(Vertical):
             card.show(Text(str(error)))
 
     def action_sort(self) -> None:
-        """Sort by the next quantity; after the last quantity, sort by relevance again."""
         keys = [None, *(column.key for column in COLUMNS)]
         self._by = keys[(keys.index(self._by) + 1) % len(keys)]
         self.retitle(self._target)
         self._search()
 
     def action_mark(self) -> None:
-        """Mark the component under the cursor as a favourite, or remove the mark."""
         chosen = self.listing.chosen
         if chosen is not None:
             try:
@@ -306,13 +294,11 @@ class CataloguePane(Vertical):
             self._search_again()
 
     def action_choose(self, by: int) -> None:
-        """Move the cursor of the list by `by` rows."""
         self.listing.cursor += by
 
     @on(Input.Submitted, "#catalogue-search")
     @on(ComponentList.Pressed)
     def action_take(self) -> None:
-        """Put the component under the cursor into the line, after asking for required values."""
         chosen = self.listing.chosen
         if chosen is None:
             return
@@ -341,5 +327,4 @@ class CataloguePane(Vertical):
         dialogs.enter(self.app, chosen.id, "", [form_field, label], take)
 
     def action_close(self) -> None:
-        """Close the catalogue."""
         self._close()

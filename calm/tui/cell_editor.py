@@ -18,8 +18,8 @@ Then = Literal["stay", "edit next", "right", "up", "down"]
 class EditableTable(Vertical):
     """Table with an input line over the edited cell.
 
-    Subclasses call `open_editor`, and implement `write` and the movement of the cursor (`go_on`).
-    `tell` shows a message in the last line of the screen.
+    Subclasses call `open_editor`, and implement `write` and `go_on`. `tell` shows a message in the
+    last line of the screen.
     """
 
     DEFAULT_CSS = "EditableTable { layers: table over; }"
@@ -31,7 +31,6 @@ class EditableTable(Vertical):
         self.tell, self.table, self.editor = tell, table, CellEditor(self)
 
     def compose(self) -> ComposeResult:
-        """Yield the table, and the editor that is drawn over the edited cell."""
         yield self.table
         yield self.editor
 
@@ -40,7 +39,7 @@ class EditableTable(Vertical):
         raise NotImplementedError
 
     def tell_reading(self, reading: Reading) -> None:
-        """Show how the typed text is interpreted."""
+        """Show the interpretation of the typed text, or the error in the text."""
         self.tell(reading.feedback(self.editor.value), wrong=not reading.is_good)
 
     def go_on(self, then: Then, text: str | None) -> None:
@@ -48,15 +47,14 @@ class EditableTable(Vertical):
         raise NotImplementedError
 
     def abandoned(self) -> None:
-        """React when the user cancels editing; by default, do nothing."""
+        """Do nothing; subclasses may react when the user cancels editing."""
 
     def action_move_column(self, by: int) -> None:
-        """Move the cursor to the left or the right."""
         self.table.column += by
 
     @property
     def is_typing(self) -> bool:
-        """Whether a typed value has not been written yet."""
+        """Whether the editor contains typed text that is not written yet."""
         return self.editor.is_typing
 
     def open_editor(
@@ -90,7 +88,6 @@ class EditableTable(Vertical):
         return reading.is_good
 
     def _take_typed(self) -> str | None:
-        """Close the editor, and write the typed text to its cell if it is valid."""
         text = self.editor.text
         self.leave_cell()
         if text is not None:
@@ -153,7 +150,7 @@ class CellEditor(field.ScrolledEntry):
         """Open the editor with a text.
 
         The next key replaces the text. If the text is the key that opened the editor (`begun`), the
-        next key is appended to it.
+        next key is appended.
         """
         self._check, self._before = check, "" if begun else text
         self.select_on_focus = not begun
@@ -179,7 +176,7 @@ class CellEditor(field.ScrolledEntry):
         return reading.text if reading.is_good and (self.is_typing or is_completed) else None
 
     def settle(self) -> Reading:
-        """Return the interpretation of the text; unchanged text is always valid."""
+        """Return the interpretation of the text; an unchanged text is always valid."""
         if not self.is_typing:
             return Reading(self.value)
         return self._judged()
@@ -190,12 +187,10 @@ class CellEditor(field.ScrolledEntry):
         return reading
 
     def watch_value(self) -> None:
-        """Check the text at each key press."""
         if self.is_open:
             self._owner.tell_reading(self._judged())
 
     def action_done(self, then: Then = "stay") -> None:
-        """Accept the text and move the cursor."""
         reading = self._judged()
         if reading.is_good:
             self._owner.done(then)
@@ -204,25 +199,20 @@ class CellEditor(field.ScrolledEntry):
             self.correct(reading)
 
     def action_right(self) -> None:
-        """Accept typed text if the cursor is at the end of the text, as in a spreadsheet.
-
-        Otherwise move the cursor to the right.
-        """
+        # as in a spreadsheet
         if self.is_typing and self.cursor_position == len(self.value) and self.selection.is_empty:
             self.action_done("right")
         else:
             self.action_cursor_right()
 
     def action_abandon(self) -> None:
-        """Cancel editing."""
         self._owner.abandon()
 
     def on_blur(self, event: events.Blur) -> None:
-        """Accept a valid value when the focus moves elsewhere, for instance by a mouse press."""
         self.call_after_refresh(self._end_if_left)
 
     def _end_if_left(self) -> None:
-        """Finish editing, unless another value is being edited or the window has lost the focus."""
+        # the editor has opened for another cell (`is_here`), or the window has lost the focus
         if not self.is_open or self.is_here or not self.app.app_focus:
             return
         reading = self._check(self.value)

@@ -137,7 +137,10 @@ number = quantity(QuantityField("number"))
 
 
 def count(text: str) -> Reading:
-    """Check a number of pieces, which must be whole; an empty text means 1."""
+    """Check a number of pieces, which must be whole.
+
+    An empty text means 1.
+    """
     tidy = text.strip().lstrip("x×* ")
     if not tidy:
         return Reading("1")
@@ -159,8 +162,9 @@ def distance(before: str = "") -> Check:
 def length(before: str = "", *, towed: bool = False) -> Check:
     """Return a check for the length of a piece.
 
-    The text is a length, a length with the load at which it was measured (``98 m at 2 kN``), or
-    ``fit`` with the depth to reach. A bare number gets the unit of the previous text, `before`.
+    The text is a length, a length with the load at which the length was measured
+    (``98 m at 2 kN``), or ``fit`` with the required depth of the top (if `towed`, of the lower
+    end). A bare number gets the unit of the previous text, `before`.
     """
     plain = quantity(POSITIVE_LENGTH, usual_unit=unit_of(before))
     depth = quantity(QuantityField("length") if towed else LENGTH, usual_unit=unit_of(before))
@@ -170,7 +174,7 @@ def length(before: str = "", *, towed: bool = False) -> Check:
     def check(text: str) -> Reading:
         fit, measured = _FIT.fullmatch(text.strip()), _AT_LOAD.fullmatch(text.strip())
         if fit is None and measured is not None:
-            return _joined(plain(measured[1]), load(measured[2]))
+            return _length_at_load(plain(measured[1]), load(measured[2]))
         if fit is None:
             return plain(text)
         if not fit[1]:
@@ -182,8 +186,7 @@ def length(before: str = "", *, towed: bool = False) -> Check:
     return check
 
 
-def _joined(long: Reading, load: Reading) -> Reading:
-    """Combine the interpretations of a length and of the load at which it was measured."""
+def _length_at_load(long: Reading, load: Reading) -> Reading:
     offers = [each.offer or each.text for each in (long, load)]
     offer = " at ".join(offers) if long.offer or load.offer else None
     complaint = long.complaint or load.complaint

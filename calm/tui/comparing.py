@@ -1,4 +1,4 @@
-"""Actions of the main screen for advice, comparisons, reports and deck sheets."""
+"""Commands of the main screen for comparison, advice, and documents."""
 
 from __future__ import annotations
 
@@ -30,13 +30,12 @@ _DOCUMENTS = {"report": ("check", "--report"), "deck": ("deck", "--output")}
 
 
 class ComparingScreen(line_screen.LineScreen):
-    """Part of the main screen that compares the line with the saved file and with proposed changes.
+    """Main screen with the commands for comparison, advice, and documents.
 
-    The lines are solved and checked in a thread; a question or a message shows the outcome.
+    Slow work runs in a thread; a dialog or a message shows the result.
     """
 
     def action_compare(self) -> None:
-        """List the changes since the last save, and draw the saved line for comparison."""
         if not self.settle():
             return
         if not self.session.changed:
@@ -68,10 +67,7 @@ class ComparingScreen(line_screen.LineScreen):
         self.run_worker(work, thread=True, group="advice", exclusive=True)
 
     def _effects(self, before: View, after: View) -> list[str]:
-        """Return the differences between two lines after a full check of both lines.
-
-        This is called in a thread.
-        """
+        # called in a thread, since the full check is slow
         from calm.tui.advice import differences
         from calm.tui.live import judge_fully
 
@@ -81,7 +77,6 @@ class ComparingScreen(line_screen.LineScreen):
     # advice
 
     def action_advise(self) -> None:
-        """Suggest changes that correct findings or meet a target."""
         from calm.tui.advice import offers, single
 
         if not self.settle():
@@ -104,7 +99,9 @@ class ComparingScreen(line_screen.LineScreen):
 
         def show(found: list[Offer]) -> None:
             self.workspace.tell("")
-            answers = numbered((offer.title, partial(self._try, offer, view)) for offer in found)
+            answers = numbered(
+                (offer.title, partial(self._preview, offer, view)) for offer in found
+            )
             if view.result is not None and not view.result.towed:
                 other = partial(self._ask_for_target, view, view.result.design)
                 answers.append(Answer("o", "another target, as in `calm size`", other))
@@ -127,7 +124,7 @@ class ComparingScreen(line_screen.LineScreen):
             except CalmError as error:
                 self.tell(str(error).replace("\n", " "), wrong=True)
             else:
-                self._try(offer, view)
+                self._preview(offer, view)
 
         row = self.line.table.row
         label = "top float" if row is None else row.texts.get("label") or row.texts["component"]
@@ -143,8 +140,7 @@ class ComparingScreen(line_screen.LineScreen):
         )
         enter(self.app, "A target to meet", text, fields, take)
 
-    def _try(self, offer: Offer, before: View) -> None:
-        """Make a suggested change in a thread, show its effects, and ask for confirmation."""
+    def _preview(self, offer: Offer, before: View) -> None:
         session, draft = self.session, self.session.draft
 
         def work() -> None:
@@ -177,7 +173,6 @@ class ComparingScreen(line_screen.LineScreen):
     # reports and sheets
 
     def action_documents(self) -> None:
-        """Show the bill of material, or write the report or deck sheets of the saved file."""
         if not self.settle():
             return
         view = self.workspace.view if self.workspace.is_fresh else None
@@ -208,11 +203,10 @@ class ComparingScreen(line_screen.LineScreen):
 
         folder = path.with_name(f"{path.stem}-{what}")
         fields = [FormField("folder", "Folder", str(folder), checking.needed("a folder"))]
-        write = partial(self._write, what, path)
+        write = partial(self._write_document, what, path)
         enter(self.app, "Output folder", "", fields, write)
 
-    def _write(self, what: str, path: Path, texts: dict[str, str]) -> None:
-        """Run a document command in a thread, and show its last message."""
+    def _write_document(self, what: str, path: Path, texts: dict[str, str]) -> None:
         folder, (command, option) = Path(texts["folder"]).expanduser(), _DOCUMENTS[what]
         words = [sys.executable, "-m", "calm", command, str(path), option, str(folder)]
         words += [word for each in self.session.catalogs for word in ("--catalog", str(each))]

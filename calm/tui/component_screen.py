@@ -1,6 +1,6 @@
 """Form for a component defined in the file.
 
-Each value is checked during typing, and the whole component on completion.
+Each key press checks the typed value and the whole component.
 """
 
 from collections.abc import Collection
@@ -64,7 +64,6 @@ class ComponentScreen(dialogs.Form[Defined]):
         self._values = dict(self._begun)
 
     def compose(self) -> ComposeResult:
-        """Yield the title, the fields with the resulting card, and the keys."""
         yield TitleBar()
         with Horizontal():
             with VerticalScroll(id="fields", can_focus=False):
@@ -85,7 +84,6 @@ class ComponentScreen(dialogs.Form[Defined]):
         yield KeyBar()
 
     async def on_mount(self) -> None:
-        """Show the fields of the first kind."""
         what = f"{self._component}, a {self._kind}" if self._begun else "A component of your own"
         self.query_one(TitleBar).show(f"{what}, defined in this file   * required", "")
         self.query_one(KeyBar).show_keys(key_table.hints("form"))
@@ -96,7 +94,7 @@ class ComponentScreen(dialogs.Form[Defined]):
         holder = self.query_one("#kind-fields", Vertical)
         await holder.remove_children()
         await holder.mount(*self.parts_of(filled(form_fields(self._kind), self._values)))
-        self._judge()
+        self._show_outcome()
 
     @on(Cycle.Turned)
     async def _turn(self, event: Cycle.Turned) -> None:
@@ -109,8 +107,7 @@ class ComponentScreen(dialogs.Form[Defined]):
         id = texts.pop("id", self._component)
         return id, texts if self._begun else {"kind": self._kind, **texts}
 
-    def _all(self) -> tuple[str, dict[str, Any]]:
-        """Return the id and all values, including keys without a field in the form."""
+    def _full_definition(self) -> tuple[str, dict[str, Any]]:
         id, texts = self._given()
         shown = {key.partition(".")[0] for key in texts}
         others = {key: value for key, value in self._begun.items() if key not in shown}
@@ -122,14 +119,13 @@ class ComponentScreen(dialogs.Form[Defined]):
 
     @on(Field.Judged)
     @on(events.DescendantFocus)
-    def _judge(self) -> None:
-        """Show the card of the component with the entered values, and any errors."""
+    def _show_outcome(self) -> None:
         from rich.console import Group, RenderableType
         from rich.text import Text
 
         from calm.report import component_cards, terminal
 
-        id, values = self._all()
+        id, values = self._full_definition()
         component, problems = defined(id or "component", values)
         here = next((each.form_field for each in self.fields if each.input.has_focus), None)
         parts: list[RenderableType] = [Text(f"{here.takes}\n", "dim")] if here else []
@@ -147,10 +143,9 @@ class ComponentScreen(dialogs.Form[Defined]):
         self.query_one("#outcome-text", Static).update(Group(*parts))
 
     def action_take(self) -> None:
-        """Return the component if all values are valid."""
         if not all_settled(self.all_parts):
             return
-        component, problems = defined(*self._all())
+        component, problems = defined(*self._full_definition())
         if component is None:
             message = problems[0].message if problems else "Required fields are missing"
             self.tell(message, wrong=True)

@@ -106,7 +106,6 @@ class Question(ModalScreen[Then | None]):
         self._marked: int | None = None
 
     def compose(self) -> ComposeResult:
-        """Yield the question, and its answers below."""
         with Vertical():
             yield Static(self._title, classes="title", markup=False)
             yield Static(self._text, classes="text", markup=False)
@@ -120,7 +119,6 @@ class Question(ModalScreen[Then | None]):
                 yield Static("[@click=screen.leave][b]Esc[/b]  go back[/]")
 
     def on_key(self, event: Key) -> None:
-        """Choose an answer by its key; ignore all other keys."""
         for answer in self._answers:
             if event.key in (answer.key, answer.key.lower()):
                 event.stop()
@@ -128,12 +126,10 @@ class Question(ModalScreen[Then | None]):
                 return
 
     def on_mount(self) -> None:
-        """Mark the first answer of a numbered list."""
-        if self._answers[0].key == "1":
+        if self._answers[0].key == "1":  # a numbered list
             self.action_move(1)
 
     def action_move(self, by: int) -> None:
-        """Move the mark to the answer above or below."""
         if self._marked is None:
             self._marked = 0 if by > 0 else len(self._answers) - 1
         else:
@@ -142,22 +138,19 @@ class Question(ModalScreen[Then | None]):
             shown.set_class(number == self._marked, "-marked")
 
     def action_give(self) -> None:
-        """Choose the marked answer."""
         if self._marked is not None:
             self.action_answer_number(self._marked)
 
     def action_answer_number(self, number: int) -> None:
-        """Choose an answer by its number."""
         self.dismiss(self._answers[number].then)
 
     def action_leave(self) -> None:
-        """Close the question without an answer."""
         if not self._must:
             self.dismiss(self._back)
 
 
 class Form(Screen[T | None]):
-    """Fields that are entered together.
+    """Screen of fields that are accepted together.
 
     Enter moves to the next field; on the last field, Enter accepts all fields.
     """
@@ -201,11 +194,10 @@ class Form(Screen[T | None]):
             self.focus_next()
 
     def action_take(self) -> None:
-        """Return the entered texts if all are valid."""
+        """Close the form with the entered values, if all values are valid."""
         raise NotImplementedError
 
     def action_leave(self) -> None:
-        """Close the form without a result."""
         self.dismiss(None)
 
 
@@ -237,7 +229,6 @@ class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
         self._title, self._text, self._form_fields = title, text, fields
 
     def compose(self) -> ComposeResult:
-        """Yield the title, the fields and the keys."""
         with Vertical():
             with VerticalScroll(id="asked", can_focus=False):
                 yield Static(self._title, classes="title", markup=False)
@@ -252,11 +243,10 @@ class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
             )
 
     def on_mount(self) -> None:
-        """Give the first field the focus."""
         self.all_parts[0].input.focus()
 
     def on_resize(self) -> None:
-        """Keep the note below the fields visible."""
+        # keep the note below the fields visible
         self.query_one("#asked").styles.max_height = max(self.size.height - _BELOW, 1)
 
     @on(Field.Judged)
@@ -275,19 +265,17 @@ class InputSheet(Form[dict[str, str]], ModalScreen[dict[str, str] | None]):
                 self.tell(reading.note or _TABLE_KEYS, wrong=not reading.is_good)
 
     def tell(self, text: str, *, wrong: bool = False) -> None:
-        """Show a message below the fields."""
         note = self.query_one("#sheet-note", Static)
         note.update(text)
         note.set_class(wrong, "-wrong")
 
     def action_take(self) -> None:
-        """Return the texts if all are valid."""
         if all_settled(self.all_parts):
             self.dismiss(self.texts)
 
 
 class LongText(ModalScreen[None]):
-    """Screen with a long text that can be scrolled; `wide` gives room for tables."""
+    """Screen with a long text that scrolls; `wide` makes room for tables."""
 
     BINDINGS = key_table.bindings("help")
     DEFAULT_CSS = (
@@ -300,6 +288,5 @@ class LongText(ModalScreen[None]):
         self._text = text
 
     def compose(self) -> ComposeResult:
-        """Yield the text."""
         with VerticalScroll():
             yield Static(self._text)

@@ -23,16 +23,15 @@ from calm.tui.key_table import bindings
 
 
 class ScrolledEntry(Input):
-    """Text input that ignores a paste of several lines, which its container then receives."""
+    """Text input that leaves a paste of several lines to its container."""
 
     virtual_size = Reactive(Size(0, 0), repaint=False)
 
     def on_mount(self) -> None:
-        """Switch off the blinking cursor, so that an idle builder sends no data."""
-        self.cursor_blink = False
+        self.cursor_blink = False  # an idle builder sends no data
 
     def on_paste(self, event: events.Paste) -> None:
-        """Prevent Textual from inserting the first row of a pasted table."""
+        # Textual would insert the first row of a pasted table
         if len(event.text.splitlines()) > 1:
             event.prevent_default()
 
@@ -52,7 +51,7 @@ class Part(Protocol):
 
     @property
     def text(self) -> str:
-        """Entered text, as it is written to the file."""
+        """Text to write to the file."""
 
     @property
     def input(self) -> Widget:
@@ -76,8 +75,8 @@ def all_settled(fields: Iterable[Part]) -> bool:
 class Field(Horizontal):
     """Field of a form, with a name, a text input, and a note.
 
-    Only the input is a widget of its own, because each widget in a form of dozens of fields takes
-    time to start. The field draws the name and the note into the margins of the input.
+    Each widget takes time to start, and a form may have dozens of fields. The field therefore
+    contains one widget, the input, and draws the name and the note into the margins of the input.
 
     When the user presses Enter or leaves the field, the field posts `Committed` if its text is
     valid and differs from the initial text. An invalid text stays in the field, is marked, and is
@@ -124,11 +123,9 @@ class Field(Horizontal):
         )
 
     def compose(self) -> ComposeResult:
-        """Yield the input."""
         yield self.input
 
     def render(self) -> Content:
-        """Render the name and, if there is room, the note."""
         before, width = self.input.styles.margin.left, self.input.outer_size.width + 1
         title = Content(self.form_field.title).truncate(before, ellipsis=True, pad=True)
         room = max(self.content_size.width - before - width, 0)
@@ -137,9 +134,8 @@ class Field(Horizontal):
         return Content.assemble(title, " " * width, (note.plain, style))
 
     def notify_style_update(self) -> None:
-        """Render again, since margin and width of the input may have changed."""
         super().notify_style_update()
-        self.refresh()
+        self.refresh()  # margin and width of the input may have changed
 
     @property
     def is_typing(self) -> bool:
@@ -148,16 +144,16 @@ class Field(Horizontal):
 
     @property
     def text(self) -> str:
-        """Typed text as it is written to the file, or the initial text if unchanged."""
+        """Text to write to the file; the initial text if the user has not changed it."""
         return self.reading.text if self.is_typing else self.begun
 
     @property
     def reading(self) -> Reading:
-        """Interpretation of the text."""
+        """Interpretation of the typed text."""
         return self.check(self.input.value)
 
     def reset(self, text: str) -> None:
-        """Set and show another initial text."""
+        """Replace the initial text, and show the new text."""
         self.begun = self._shown = text
         with self.prevent(Input.Changed):
             self.input.value = text
@@ -199,7 +195,6 @@ class Field(Horizontal):
             self.post_message(self.Entered(self))
 
     def on_descendant_blur(self, event: events.DescendantBlur) -> None:
-        """Accept a valid text when the focus leaves the field."""
         if self.reading.is_good:
             self.settle()
 
@@ -266,16 +261,13 @@ class Cycle(Widget, can_focus=True):
         return self.words[(here + by) % len(self.words)]
 
     def action_turn(self, by: int) -> None:
-        """Select the next or the previous word."""
         self.show(self.next_word(by))
         self.post_message(self.Turned(self.word))
 
     def on_click(self) -> None:
-        """Select the next word."""
         self.action_turn(1)
 
     def render(self) -> Text:
-        """Render the name, the arrows and the word."""
         return Text.assemble(
             (self._title, "dim"),
             ("‹ " if self.has_focus else "  ", "dim"),

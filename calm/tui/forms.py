@@ -1,4 +1,7 @@
-"""Forms for sections of the file: fields for the keys of a model, and conversion of values to text.
+"""Forms for sections of a mooring file.
+
+The fields of a form are created from the keys of a pydantic model. Values of the file are converted
+to text and back.
 
 A structured value is typed as YAML in brackets, such as `[98 m, 104 m]`. A list of rows is edited
 as a table, whose text is also YAML.
@@ -63,7 +66,7 @@ class FormField:
 
 
 def form_of(model: type[BaseModel], at: str = "", *, needed: bool = True) -> list[FormField]:
-    """Create the form fields of a model, with required keys first and nested models last.
+    """Create the form fields of a pydantic model, with required keys first and nested models last.
 
     Parameters
     ----------
@@ -84,19 +87,19 @@ def form_of(model: type[BaseModel], at: str = "", *, needed: bool = True) -> lis
 
 
 def model_in(annotation: Any) -> type[BaseModel] | None:
-    """Return the model in a type annotation.
+    """Return the pydantic model in a type annotation.
 
     Return None if there is no model, or if the annotation allows several types.
     """
-    members = _members(annotation)
+    members = _types_in(annotation)
     return members[0] if len(members) == 1 and _is_model(members[0]) else None
 
 
 def _form_field(model: type[BaseModel], name: str, at: str, *, needed: bool) -> FormField:
     field = model.model_fields[name]
-    members, is_needed = _members(field.annotation), field.is_required()
-    found, words = quantity_of(field), _words(members)
-    check: Check = partial(_judged, model, name, is_needed and needed)
+    members, is_needed = _types_in(field.annotation), field.is_required()
+    found, words = quantity_of(field), _allowed_words(members)
+    check: Check = partial(_reading_of, model, name, is_needed and needed)
     if found is not None:
         optional = not (is_needed and needed)
         check = quantity(found, optional=optional, usual_unit=found.usual_unit)
@@ -117,8 +120,7 @@ def _form_field(model: type[BaseModel], name: str, at: str, *, needed: bool) -> 
     )
 
 
-def _judged(model: type[BaseModel], name: str, needed: bool, text: str) -> Reading:
-    """Interpret a typed text by validating it as the value of a key in the model."""
+def _reading_of(model: type[BaseModel], name: str, needed: bool, text: str) -> Reading:
     tidy = " ".join(text.split())
     if not tidy:
         return Reading("", "a value is needed" if needed else "")
@@ -126,7 +128,7 @@ def _judged(model: type[BaseModel], name: str, needed: bool, text: str) -> Readi
 
 
 def _columns(members: tuple[Any, ...]) -> tuple[FormColumn, ...]:
-    """Return the table columns for a list of models or of rows with a fixed length, else ()."""
+    """Return the table columns for a list of models or fixed-length rows, else ()."""
     if len(members) != 1 or get_origin(members[0]) is not tuple:
         return ()
     row = get_args(members[0])[0]
@@ -144,12 +146,11 @@ def _columns(members: tuple[Any, ...]) -> tuple[FormColumn, ...]:
     return tuple(columns)
 
 
-def _members(annotation: Any) -> tuple[Any, ...]:
-    """Return the types in a union without None and without metadata."""
+def _types_in(annotation: Any) -> tuple[Any, ...]:
     if get_origin(annotation) in (Union, UnionType):
-        return tuple(member for each in get_args(annotation) for member in _members(each))
+        return tuple(member for each in get_args(annotation) for member in _types_in(each))
     if hasattr(annotation, "__metadata__"):
-        return _members(get_args(annotation)[0])
+        return _types_in(get_args(annotation)[0])
     return () if annotation is NoneType else (annotation,)
 
 
@@ -157,8 +158,7 @@ def _is_model(member: Any) -> bool:
     return isinstance(member, type) and issubclass(member, BaseModel)
 
 
-def _words(members: tuple[Any, ...]) -> tuple[str, ...]:
-    """Return the allowed words of a field, or () if the field allows other texts."""
+def _allowed_words(members: tuple[Any, ...]) -> tuple[str, ...]:
     if members == (bool,):
         return "true", "false"
     if all(get_origin(each) is Literal for each in members):
@@ -228,7 +228,7 @@ def _row(row: Sequence[str], columns: Sequence[FormColumn]) -> Value:
 
 
 def filled(fields: Iterable[FormField], values: Any) -> list[FormField]:
-    """Return copies of form fields, filled with the values in the file as texts."""
+    """Return copies of form fields, filled with the values of the file as texts."""
 
     def at(key: str) -> Any:
         found = values
@@ -253,7 +253,7 @@ def values_of(texts: Mapping[str, str]) -> dict[str, Any]:
 
 
 def written(draft: Draft, texts: Mapping[str, str], below: Location = ()) -> Draft:
-    """Write the texts of a form to the file, and return the changed draft.
+    """Write the texts of a form to a draft, and return the new draft.
 
     A key is deleted if its text is blank.
     """

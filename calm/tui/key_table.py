@@ -1,6 +1,6 @@
 """All actions of the builder with their keys.
 
-Key bindings, key bar, help and command palette derive from this table.
+Key bindings, key bar, help and command palette are made from this table.
 """
 
 from collections.abc import Iterable

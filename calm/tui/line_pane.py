@@ -1,4 +1,4 @@
-"""The line pane, with the rows of the line and the actions on them."""
+"""Pane with the rows of the line, and the commands that edit the rows."""
 
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -46,13 +46,12 @@ class LinePane(LineSearch):
         self._cell: LineCell | None = None  # the cell edited now or last
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Disable all actions while a value is typed, and actions on rows if the line is empty."""
         return not self.editor.is_open and (bool(self.table.rows) or action not in _FROM_A_ROW)
 
     def show_rows(self) -> None:
         """Show the rows of the draft, with the results or mistakes of the latest view.
 
-        If this view has neither, show the results of the latest view with an equilibrium.
+        If the latest view has neither, show the results of the latest view with an equilibrium.
         """
         workspace, view = self.workspace, self.workspace.view
         workspace.refresh_index()
@@ -61,7 +60,7 @@ class LinePane(LineSearch):
         self.table.show_rows(rows, old=workspace.is_old)
 
     def show_draft(self, spot: Place | None = None) -> None:
-        """Show a new draft, and move the cursor to `spot`, if given."""
+        """Show a new draft, and move the cursor to the row at `spot`, if given."""
         here = self.table.spot if spot is None else spot
         self.leave_cell()
         self.table.mark(frozenset())
@@ -86,36 +85,28 @@ class LinePane(LineSearch):
     # the cursor and the marks
 
     def action_move_cursor(self, by: int) -> None:
-        """Go up or down."""
         self.table.cursor += by
 
     def action_move_page(self, by: int) -> None:
-        """Go a page up or down."""
         self.table.cursor += by * max(self.table.size.height - 2, 1)
 
     def action_move_to_end(self, direction: int) -> None:
-        """Go to the top or the bottom."""
         self.table.cursor = 0 if direction < 0 else len(self.table.rows) - 1
 
     def action_mark(self, by: int) -> None:
-        """Toggle the mark of the row if `by` is 0; else move `by` rows, and mark both its ends."""
         table = self.table
         marked, spot = table.marked, table.chosen_here
         table.cursor += by
+        # `by` = 0 toggles the mark of the row
         table.mark(marked | {spot, table.chosen_here} if by else marked ^ {spot})
 
     def action_mark_all(self) -> None:
-        """Mark all pieces, or remove all marks if all are marked."""
         pieces = frozenset(row.spot for row in self.table.rows if not row.spot.is_clamp)
         self.table.mark(frozenset() if self.table.marked >= pieces else pieces)
 
     # findings
 
     def action_next_finding(self) -> None:
-        """Move to the next row with a failure.
-
-        If no row has a failure, move to the next warning, or else to the next missing value.
-        """
         rows, here = self.table.rows, self.table.cursor
         around = [*range(here + 1, len(rows)), *range(here + 1)]
         for state in (State.FAIL, State.WARN, State.UNKNOWN):
@@ -133,7 +124,6 @@ class LinePane(LineSearch):
         return why(view, spot) if view is not None and self.workspace.is_fresh else []
 
     def action_why(self) -> None:
-        """Show all findings of the row under the cursor."""
         row = self.table.rows[self.table.cursor]
         found = self._found_of(row.spot)
         if not found:
@@ -146,14 +136,12 @@ class LinePane(LineSearch):
     # rows
 
     def action_search(self, purpose: Purpose) -> None:
-        """Search the catalogue for a component for the row."""
         if self.table.rows or purpose in ("below", "above"):
             self._search(purpose)
         elif purpose == "clamp":
             self.workspace.tell("Add a piece before clamping an instrument")
 
     def action_equipment(self) -> None:
-        """Edit the serial number, calibration and other equipment keys of the row."""
         spot = self.table.chosen_here
         values = self.session.written(spot)
         label = str(values.get("label") or values.get("use") or "")
@@ -169,7 +157,6 @@ class LinePane(LineSearch):
         ask(self.app, equipment_sheet(label, values, is_clamp=spot.is_clamp), take)
 
     def action_column(self) -> None:
-        """Edit one column of the marked rows, or of all rows with the same component."""
         table = self.table
         spots = table.chosen
         if not table.marked:
@@ -193,8 +180,7 @@ class LinePane(LineSearch):
         choose(self.app, Question("Fill a column", text, answers))
 
     def action_repeat(self) -> None:
-        """Add several copies of the selected rows."""
-        chosen = self._chosen_of_a_kind()
+        chosen = self._unmixed_selection()
 
         def take(texts: dict[str, str]) -> None:
             self.attempt(lambda: self.session.duplicate(chosen, times=int(texts["count"])))
@@ -204,8 +190,7 @@ class LinePane(LineSearch):
             enter(self.app, "Repeat", "", fields, take)
 
     def action_duplicate(self) -> None:
-        """Duplicate the selected rows."""
-        chosen = self._chosen_of_a_kind()
+        chosen = self._unmixed_selection()
         named = [each for spot in chosen for each in references_to(self.session.draft, spot)]
 
         def duplicate(also: Sequence[Named] = ()) -> None:
@@ -224,14 +209,12 @@ class LinePane(LineSearch):
             duplicate()
 
     def action_delete(self) -> None:
-        """Delete the selected rows."""
         chosen = self.table.chosen
         what = f"{len(chosen)} rows" if len(chosen) > 1 else "deleted"
         self.attempt(lambda: self.session.delete(chosen), f"{what}; u restores")
 
     def action_move_piece(self, by: int) -> None:
-        """Move the selected rows up or down."""
-        marked, chosen = self.table.marked, self._chosen_of_a_kind()
+        marked, chosen = self.table.marked, self._unmixed_selection()
         moved: list[Place] = []
 
         def move() -> Place:
@@ -242,32 +225,25 @@ class LinePane(LineSearch):
             self.table.mark(frozenset(moved))
 
     def action_copy(self) -> None:
-        """Copy the selected rows for pasting."""
-        if copied := self.session.copy(self._chosen_of_a_kind()):
+        if copied := self.session.copy(self._unmixed_selection()):
             self.table.mark(frozenset())
             self.workspace.tell(f"{copied} row{'s' * (copied != 1)} copied; v pastes below")
 
     def action_cut(self) -> None:
-        """Cut the selected rows for pasting."""
-        chosen = self._chosen_of_a_kind()
+        chosen = self._unmixed_selection()
         if self.session.copy(chosen):
             self.attempt(lambda: self.session.delete(chosen), "cut; v pastes below")
 
     def action_paste(self, below: int) -> None:
-        """Paste the copied rows."""
         if not self.session.copied:
             self.workspace.tell("There are no copied rows to paste")
         else:
             self.attempt(lambda: self.session.paste(self.table.spot, below=bool(below)))
 
-    def _chosen_of_a_kind(self) -> tuple[Place, ...]:
-        """Return the selected rows, unless pieces are mixed with clamps of other pieces.
-
-        Such clamps have no position among pieces that are pasted or moved. If there are any, a
-        message is shown and () is returned.
-        """
+    def _unmixed_selection(self) -> tuple[Place, ...]:
         chosen = self.table.chosen
         pieces = {spot.item for spot in chosen if not spot.is_clamp}
+        # a clamp on another piece has no position among pieces that are pasted or moved
         if pieces and any(spot.is_clamp and spot.item not in pieces for spot in chosen):
             self.workspace.tell(_MIXED, wrong=True)
             return ()
@@ -276,7 +252,6 @@ class LinePane(LineSearch):
     # a value in place
 
     def action_edit(self) -> None:
-        """Edit the value under the cursor."""
         self.action_edit_column(EDITABLE[self.table.column])
 
     @on(LineTable.Pressed)
@@ -284,7 +259,6 @@ class LinePane(LineSearch):
         self.action_edit()
 
     def action_edit_column(self, column: Column) -> None:
-        """Edit a value of the row under the cursor."""
         spot = self.table.spot
         if spot is None:
             self._search("below")
@@ -294,7 +268,6 @@ class LinePane(LineSearch):
             self._edit(LineCell(self.workspace, spot, column))
 
     def _edit(self, cell: LineCell) -> None:
-        """Edit a value, after accepting the text typed in another cell."""
         if refused := cell.refused:
             self.workspace.tell(refused)
         if refused or not self.settle():
@@ -305,14 +278,12 @@ class LinePane(LineSearch):
         self.open_editor(cell.text, cell.check, least_width=least)
 
     def write(self, text: str) -> None:
-        """Write a valid text into the draft."""
         cell, before = self._cell, self.session.draft
         is_put = cell is not None and self.workspace.attempt(lambda: cell.put(text))[0]
         if is_put and self.session.draft is not before:
             self._show_edited()
 
     def go_on(self, then: Then, text: str | None) -> None:
-        """Move the cursor to the next value of the row, or to another row, as `then` requests."""
         onward = self._cell.onward() if self._cell and then == "edit next" else None
         if onward is not None:
             self._edit(onward)

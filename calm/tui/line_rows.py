@@ -1,4 +1,4 @@
-"""Rows of the line table from the file and its results, and editing of their values and columns."""
+"""Rows of the line table, and editing of their cells and columns."""
 
 from __future__ import annotations
 
@@ -47,8 +47,8 @@ def table_rows(
     `view` was computed from an earlier text, a row shows values only if its component and label are
     the same as in that text. Rows that were `added` after that text show no values.
     """
-    found = _figures(draft, view, added)
-    wrong = _wrong_items(draft, view)
+    found = _results_by_row(draft, view, added)
+    wrong = _items_with_mistakes(draft, view)
     rows = []
     before, legs = "", draft.lists.legs
     for number, item in enumerate(draft.items):
@@ -62,8 +62,7 @@ def table_rows(
     return rows
 
 
-def _wrong_items(draft: Draft, view: View | None) -> set[int]:
-    """Return the numbers of the items with mistakes in their lines of text."""
+def _items_with_mistakes(draft: Draft, view: View | None) -> set[int]:
     if view is None or view.text != draft.text or not view.problems:
         return set()
     lines = {problem.line for problem in view.problems if problem.path == str(view.path)}
@@ -74,10 +73,9 @@ def _wrong_items(draft: Draft, view: View | None) -> set[int]:
     }
 
 
-def _figures(
+def _results_by_row(
     draft: Draft, view: View | None, added: Collection[Place]
 ) -> dict[Place, Sequence[FoundRow]]:
-    """Return the results that belong to each row of the draft."""
     if view is None:
         return {}
     found: dict[Place, list[FoundRow]] = {}
@@ -87,19 +85,18 @@ def _figures(
         return dict(found)
     known: dict[tuple[str, str, bool], list[Sequence[FoundRow]]] = {}
     for place, rows in found.items():
-        known.setdefault(_called(view.items, place), []).append(rows)
+        known.setdefault(_identity(view.items, place), []).append(rows)
     taken: dict[Place, Sequence[FoundRow]] = {}
     for number, item in enumerate(draft.items):
         for below in range(-1, len(item.clamps)):
             place = Place(number, clamp=below)
-            rest = known.get(_called(draft.items, place))
+            rest = known.get(_identity(draft.items, place))
             if rest and place not in added:
                 taken[place] = rest.pop(0)
     return taken
 
 
-def _called(items: Sequence[LineItem], place: Place) -> tuple[str, str, bool]:
-    """Return component, label, and whether the row is a clamp, to find the row in another text."""
+def _identity(items: Sequence[LineItem], place: Place) -> tuple[str, str, bool]:
     item = items[place.item]
     values = (item.clamps[place.clamp] if place.is_clamp else item).values
     use = values.get("use", "")
@@ -131,7 +128,6 @@ def _length(values: Mapping[str, str], found: Sequence[FoundRow]) -> str:
 
 
 def _summary_texts(found: Sequence[FoundRow]) -> dict[str, str]:
-    """Return the governing value of an item's pieces in each column, as text."""
     texts = {}
     for one in table_columns(Output.BUILDER):
         known = [row.figures[one.name] for row in found if one.name in row.figures]
@@ -152,7 +148,10 @@ _NO_LENGTH = "The component determines the length"
 
 @dataclass(frozen=True)
 class LineCell:
-    """Cell of the line table; edits of the cell are written to the file of a workspace."""
+    """Cell of the line table.
+
+    Edits of the cell change the draft of the workspace.
+    """
 
     workspace: Workspace
     spot: Place
@@ -167,7 +166,7 @@ class LineCell:
 
     @property
     def refused(self) -> str:
-        """Reason why the value cannot be edited; "" if it can."""
+        """Reason why the value cannot be edited; "" if the value is editable."""
         listed = self.listed
         if self.spot.is_clamp:
             return _NO_COUNT if self.column == "count" else ""
@@ -194,19 +193,19 @@ class LineCell:
         return length(self._values.get("length", ""), towed=self._is_towed)
 
     def put(self, text: str) -> None:
-        """Write a valid text to the file, unless the text is unchanged.
+        """Write a valid text to the draft, unless the text is unchanged.
 
         Raises
         ------
         EditError
-            The file does not allow the change.
+            The draft does not allow the change.
         """
         if given := self.values_of(text):
             name = "place" if self.spot.is_clamp and self.column == "length" else self.column
             self.workspace.session.put({self.spot: given}, f"change the {name}")
 
     def values_of(self, text: str) -> dict[str, Value | None]:
-        """Return new values for the keys that a text changes; None deletes a key."""
+        """Return the keys of the row that a text changes, with new values; None deletes a key."""
         written = self._values
         if text == self.text:
             return {}
@@ -249,7 +248,6 @@ class ColumnSheet(InputSheet):
     """Sheet with a field for each row; a pasted list fills the fields downwards."""
 
     def on_paste(self, event: Paste) -> None:
-        """Fill the fields with the pasted lines, from the focused field downwards."""
         lines = [line.split("\t")[0].strip() for line in event.text.splitlines()]
         fields = self.fields
         first = next((i for i, field in enumerate(fields) if field.input.has_focus), 0)
@@ -265,7 +263,7 @@ class ColumnSheet(InputSheet):
 
 
 class ColumnFilling:
-    """Values of one column in several rows, which are edited on one sheet."""
+    """Column values of several rows, which are edited on one sheet."""
 
     def __init__(self, workspace: Workspace, spots: Sequence[Place], column: str) -> None:
         self._session, self._column = workspace.session, column
@@ -283,7 +281,7 @@ class ColumnFilling:
         )
 
     def write(self, texts: Mapping[str, str]) -> None:
-        """Write all changed values to the file in a single step of the history."""
+        """Write all changed values to the draft, as a single step of the history."""
         begun, draft = {each.key: each.text for each in self._form_fields}, self._session.draft
         new = {self._cells[key]: text for key, text in texts.items() if text != begun[key]}
         label = f"fill in {_TITLES[self._column].lower()}"

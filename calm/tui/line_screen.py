@@ -1,4 +1,4 @@
-"""Layout of the main screen: the line, and next to it the picture and verdict, or the catalogue."""
+"""Layout of the main screen: the line next to either the catalogue, or the picture and verdict."""
 
 from collections.abc import Collection
 
@@ -55,10 +55,6 @@ class LineScreen(screen.DraftScreen):
         self._came_from_verdict = False
 
     def parts(self) -> ComposeResult:
-        """Yield the line, the catalogue, and the pictures with the verdict.
-
-        Beside the line, either the catalogue or the pictures with the verdict are visible.
-        """
         with Horizontal(id="body"):
             yield self.line
             yield self.catalogue
@@ -68,33 +64,28 @@ class LineScreen(screen.DraftScreen):
 
     @property
     def is_typing(self) -> bool:
-        """Whether a value typed in a cell has not been written to the draft yet."""
         return self.line.editor.is_typing
 
     def settle(self) -> bool:
-        """Accept the text typed in a cell; an invalid text stays in the editor."""
         return self.line.settle()
 
     def show_draft(self) -> None:
-        """Show the current draft."""
         self.line.show_draft()
         self._show_side_panes()
         self.show_title()
 
     def show_view(self) -> None:
-        """Show the last view, dimmed if the view belongs to an earlier draft."""
         if self.workspace.is_fresh or self.workspace.is_old:
             self.line.show_rows()
         self._show_side_panes()
         self.show_title()
 
     def show_catalogue(self) -> None:
-        """Switch to a newly loaded catalogue."""
+        """Show the line and the catalogue pane with a newly loaded catalogue."""
         self.line.show_rows()
         self._show_side_panes()
 
     def _show_side_panes(self) -> None:
-        """Update catalogue, picture and verdict from the last view, dimmed if it is out of date."""
         self.catalogue.refresh_index()
         view, fresh = self.workspace.view, self.workspace.is_fresh
         last = None if view is None or view.result is not None else self.workspace.good
@@ -106,11 +97,6 @@ class LineScreen(screen.DraftScreen):
         self.verdict.set_class(self.workspace.is_old, "-old")
 
     def titles(self) -> tuple[str, str]:
-        """Return the texts at the left and the right end of the title bar.
-
-        The left text names the file and the mooring. The right text gives the environment and the
-        verdict.
-        """
         name = " ".join(self.session.draft.text_at(("name",)).split())
         standing, parts = self.session.standing, []
         here = standing.environment
@@ -133,7 +119,6 @@ class LineScreen(screen.DraftScreen):
         table.focus()
 
     def action_back(self) -> None:
-        """Return to the verdict, if the user came to the row from the verdict."""
         if self._came_from_verdict:
             self._came_from_verdict = False
             self.add_class("-reading")
@@ -142,7 +127,7 @@ class LineScreen(screen.DraftScreen):
     # components from the catalogue
 
     def search(self, purpose: Purpose) -> None:
-        """Search the catalogue for a component for the row under the cursor."""
+        """Open the catalogue to find a component for the row under the cursor."""
         self.remove_class("-zoomed")
         self.add_class("-searching")
         spot = self.line.table.spot

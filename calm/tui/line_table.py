@@ -131,11 +131,9 @@ class LineTable(TableCells, can_focus=True):
         self.refresh()
 
     def on_resize(self) -> None:
-        """Keep the cursor visible as the window changes."""
         self.follow()
 
     def below(self, y: int) -> list[Segment]:
-        """Return the hints below an empty line."""
         width = max(self.size.width, 20)
         hints = [line for text in _EMPTY for line in wrap(text, width, subsequent_indent=" " * 6)]
         if self.rows or not 1 < y < len(hints) + 2:
@@ -143,14 +141,9 @@ class LineTable(TableCells, can_focus=True):
         return [Segment(hints[y - 2], self.get_component_rich_style("line-table--clamp"))]
 
     def text_of(self, number: int, column: TableColumn) -> str:
-        """Return the text of a cell."""
         return self.rows[number].texts.get(column.name, "")
 
     def row_style(self, number: int) -> Style:
-        """Return the style of a row.
-
-        The style shows whether the row is a clamp, under the cursor, wrong or marked.
-        """
         row = self.rows[number]
         base = "line-table--clamp" if row.spot.is_clamp else "line-table--row"
         style = self.get_component_rich_style(base)
@@ -164,13 +157,11 @@ class LineTable(TableCells, can_focus=True):
         return style
 
     def cell_style(self, number: int, column: TableColumn, style: Style) -> Style:
-        """Return the style of a cell; values of an earlier draft are dimmed."""
         if self.old and column.name not in EDITABLE:
             style += self.look("line-table--old")
         return style
 
     def lead(self, number: int, style: Style) -> list[Segment]:
-        """Return the symbols in front of a row: cursor, mark or state, and role."""
         row = self.rows[number]
         sign = Segment(" ", style)
         if row.spot in self.marked:
@@ -198,12 +189,12 @@ _DEFAULT_WIDTH = 9
 _MIN_TEXT, _PREFERRED_TEXT = 9, 12
 _MAX_COMPONENT, _MAX_LABEL, _MAX_LENGTH, _MAX_LEG = 30, 40, 13, 10
 LEAD = 4
-"""Number of cells before the first column, for cursor, mark or state, sign, and a blank."""
+"""Width before the first column [cells]: cursor, mark or state, role symbol, blank."""
 
 
 @dataclass(frozen=True)
 class TableRow:
-    """Row of a piece or a clamp, as displayed.
+    """Displayed row of a piece or a clamp.
 
     Attributes
     ----------
@@ -279,7 +270,7 @@ def _heading(figure: ResultColumn) -> str:
 
 
 def _text_room(shown: list[str], width: int, fixed: dict[str, int]) -> int:
-    """Return the width that remains for the columns component and label [cells]."""
+    """Return the width that remains for the component and label columns [cells]."""
     return width - LEAD - len(shown) - sum(fixed.get(name, 0) for name in shown)
 
 
@@ -291,8 +282,6 @@ class LineSearch(cell_editor.EditableTable):
     words = ""
 
     def action_find(self) -> None:
-        """Ask for words, and go to the next row that contains them."""
-
         def take(texts: dict[str, str]) -> None:
             self.words = texts["words"]
             self.action_find_next(1)
@@ -302,7 +291,6 @@ class LineSearch(cell_editor.EditableTable):
         dialogs.enter(self.app, "Find in the line", "", fields, take)
 
     def action_find_next(self, by: int) -> None:
-        """Move to the next or previous row whose id, label, serial and maker contain all words."""
         wanted = self.words.casefold().split()
         if not wanted:
             self.workspace.tell("Press / first to search for words in the line")
@@ -312,7 +300,6 @@ class LineSearch(cell_editor.EditableTable):
         )
 
     def action_weakest(self) -> None:
-        """Go to the row with the highest utilisation of strength."""
         view = self.workspace.judged("Checks are still running; try again in a moment")
         if view is None:
             return
@@ -344,7 +331,6 @@ class LineSearch(cell_editor.EditableTable):
         self.workspace.tell(f"{found.index(number) + 1} of {len(found)} {what}")
 
     def _searched_text(self, row: TableRow) -> str:
-        """Return the text of a row that is searched, including its catalogue entry."""
         index, use = self.workspace.index, row.texts["component"].split()[-1:]
         listed = index.get(use[0]) if index and use else None
         serial = self.workspace.session.written(row.spot).get("serial", "")

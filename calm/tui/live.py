@@ -1,7 +1,7 @@
-"""Solve and judge a text while the user edits it.
+"""Solve and check the text of a mooring file while the user edits the text.
 
-This module does not depend on the screen. `judge` runs in a worker after every change;
-`judge_fully` adds the slower checks.
+This module has no user interface. `judge` runs in a worker after every change; `judge_fully` adds
+the slower checks.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ from calm.physics.seabed import required_weight
 from calm.quantities import show_in
 
 UNNAMED = "unnamed.yaml"
-"""Path that stands for a text without a file."""
+"""Placeholder for the file name of a text without a file."""
 
 
 @dataclass(frozen=True)
@@ -59,12 +59,12 @@ class View:
     findings : findings of the design check; empty for a tow
     tighter : findings in other situations in which the utilisation is higher than in `findings`
     environments : names of the environments besides the default environment
-    rows : results of all rows in file order; each piece is followed by its clamps
+    rows : results of each piece and clamp in file order; clamps follow their piece
     complete : whether `findings` has all findings of `calm check` (see `judge_fully`); also true
         for a solved tow, which has no findings
     cases : results in each environment; empty before the full check
     elsewhere : mistakes in other environments
-    held : solutions of a line without an anchor in every environment and situation
+    held : for a line without an anchor, solutions in every environment and situation
     memory : previous solutions, which are reused for the next text
     """
 
@@ -88,7 +88,7 @@ class View:
 
     def is_of(self, text: str, path: Path | None, environment: str | None) -> bool:
         """Return whether the view belongs to a given text, path and environment."""
-        return (self.text, self.path, self.environment) == (text, _placed(path), environment)
+        return (self.text, self.path, self.environment) == (text, _as_path(path), environment)
 
     @cached_property
     def items(self) -> tuple[editing.LineItem, ...]:
@@ -133,7 +133,7 @@ def judge(
         exception is raised, whatever the text contains.
     """
     memory = Memory() if keep is None else keep.memory
-    view = View(text, _placed(path), environment, memory=memory)
+    view = View(text, _as_path(path), environment, memory=memory)
     try:
         return _judged(view, catalogs)
     except Exception as error:
@@ -142,8 +142,8 @@ def judge(
         return replace(view, failure=internal_failure(error))
 
 
-def _placed(path: str | Path | None) -> Path:
-    """Return the path by which relative file names in a text are resolved."""
+def _as_path(path: str | Path | None) -> Path:
+    # relative file names in the text are resolved from this path
     return Path.cwd() / UNNAMED if path is None else Path(path)
 
 
@@ -173,7 +173,8 @@ def judge_fully(view: View, catalogs: Sequence[str | Path] = ()) -> View:
 class HeldLine:
     """A line solved in one environment and situation, with an anchor that holds any load.
 
-    `when` names the environment and the situation if they differ from those of the view.
+    `when` names the environment and the situation, except the environment of the view and the
+    situation as given.
     """
 
     when: str
@@ -184,19 +185,18 @@ class HeldLine:
 
         This weight depends on the friction coefficient of the anchor.
         """
-        load, file = self.result.anchor_load, _anchored_by(self.result.file, anchor)
+        load, file = self.result.anchor_load, _with_anchor(self.result.file, anchor)
         factor = file.checks.anchor_factor
         return float(required_weight(load.vertical, load.horizontal, factor, file.anchor_friction))
 
     def weight(self, anchor: Anchor) -> float:
         """Return the weight in water of a given anchor and its clamps, in this environment [N]."""
         leg = self.result.leg
-        return Leg(_anchored_by(leg.file, anchor), given_water=leg.water).anchor_weight
+        return Leg(_with_anchor(leg.file, anchor), given_water=leg.water).anchor_weight
 
 
-def _anchored_by(file: MooringFile, anchor: Anchor) -> MooringFile:
-    """Return a file whose line ends with another anchor of the same height."""
-    last = replace(file.pieces[-1], component=anchor)
+def _with_anchor(file: MooringFile, anchor: Anchor) -> MooringFile:
+    last = replace(file.pieces[-1], component=anchor)  # the piece keeps its height
     return replace(file, pieces=(*file.pieces[:-1], last))
 
 
@@ -213,7 +213,7 @@ def held_lines(view: View, catalogs: Sequence[str | Path] = ()) -> tuple[HeldLin
 
     def held(file: MooringFile) -> Design:
         unlimited = file.anchor.model_copy(update={"weight": _HOLDS_ANY_LOAD})
-        return Design(_anchored_by(file, unlimited), memory=view.memory)
+        return Design(_with_anchor(file, unlimited), memory=view.memory)
 
     if view.file is None:
         return ()
@@ -237,7 +237,7 @@ def in_all_environments(
 ) -> tuple[list[Design], list[Problem]]:
     """Return a mooring in each environment, and mistakes in environments that cannot be read.
 
-    In each environment, the pieces have the lengths to which they are cut in the design `here`.
+    In each environment, the pieces have their cut lengths from the design `here`.
     """
     found: list[Design] = []
     problems: list[Problem] = []
@@ -261,7 +261,7 @@ def _judged(view: View, catalogs: Sequence[str | Path]) -> View:
     try:
         document = yaml_document.compose(str(view.path), view.text)
     except InputError as error:
-        return _wrong(view, error.problems)
+        return _with_problems(view, error.problems)
     named = document.data.get("environments")
     view = replace(view, environments=tuple(named) if isinstance(named, dict) else ())
     try:
@@ -270,7 +270,7 @@ def _judged(view: View, catalogs: Sequence[str | Path]) -> View:
             stand_in=True,
         )  # fmt: skip
     except InputError as error:
-        return _wrong(view, error.problems)
+        return _with_problems(view, error.problems)
     show_in(file.units)
     view = replace(view, file=file, missing=tuple(_missing_parts(file)))
     if "no float" in view.missing:
@@ -279,7 +279,6 @@ def _judged(view: View, catalogs: Sequence[str | Path]) -> View:
 
 
 def _missing_parts(file: MooringFile) -> Iterator[str]:
-    """Yield the parts that a mooring lacks for an equilibrium; tows and nets are not examined."""
     if file.tow is not None or file.legs:
         return
     clamps = [clamp.component for piece in file.pieces for clamp in piece.clamps]
@@ -310,8 +309,7 @@ def _solved(view: View, file: MooringFile) -> View:
     )  # fmt: skip
 
 
-def _wrong(view: View, problems: Sequence[Problem]) -> View:
-    """Return a view with mistakes and missing parts as separate lists."""
+def _with_problems(view: View, problems: Sequence[Problem]) -> View:
     lacking = dict.fromkeys(problem.lacks for problem in problems if problem.lacks)
     wrong = tuple(problem for problem in problems if not problem.lacks)
     return replace(view, problems=wrong, missing=tuple(lacking))
@@ -326,7 +324,7 @@ class FoundRow:
     place : position of the piece or instrument in the parsed file
     label : label of the piece or instrument in results
     length : cut length [m]; None for a clamp, and for a fitted length that is not solved yet
-    figures : values in the columns of the builder, by column name; empty if there is no solution
+    figures : values in the columns of the line table, by column name; empty without a solution
     use : maximum utilisation in the findings on the row, or None if unknown
     state : most severe state of the findings on the row, or None if there are no findings
     lacks_strength : whether a value needed for the strength rule is missing
@@ -378,7 +376,7 @@ def rows_of(
 
 
 def _lacks_strength(finding: Finding) -> bool:
-    """Return whether a finding, accepted or not, shows that the rule `strength` lacks a value."""
+    # accepted findings count as well
     if finding.missing is not None:
         return strength.name in finding.missing.needed_by
     lacks = finding.lacks is not None and finding.utilisation is None
