@@ -141,15 +141,14 @@ def rules_table(summary: Summary) -> Table:
         broken("at most", "fails_at_most", State.FAIL),
         broken("warns", "warns", State.WARN),
         number("limits", lambda rule: len(rule.exceedances), narrow=False),
-        words("most often exceeded by", _most_often),
+        words("most often exceeded by", _most_exceeded),
         note="Shares refer to the profiles in which a rule is judged. “At most” also counts every "
         "profile with a current that was not solved. A limit counts as unknown if it could not be "
         "judged in any profile.",
     )
 
 
-def _most_often(rule: RuleShare) -> str:
-    """Name the component that most often exceeds a limit of the rule, and count unknown results."""
+def _most_exceeded(rule: RuleShare) -> str:
     most = max(rule.exceedances, key=lambda one: one.share or 0.0, default=None)
     worst = ""
     if most and most.share:

@@ -29,7 +29,9 @@ def verification_document(findings: Findings) -> dict[str, Any]:
     `source`, `name`, `kind`, `expected`, `got`, `difference`, `tolerance`, `unit`, `why` (the
     reason for the tolerance), `within`, and `reason` if no value was computed.
     """
-    cases = [_case(source, outcome) for source, outcomes in findings for outcome in outcomes]
+    cases = [
+        _case_document(source, outcome) for source, outcomes in findings for outcome in outcomes
+    ]
     kinds = by_kind(outcome.case for _, outcomes in findings for outcome in outcomes)
     return {
         "calm": __version__,
@@ -51,8 +53,10 @@ def by_kind(cases: Iterable[Case]) -> dict[Kind, int]:
 
 def verification_part(findings: Findings) -> ReportPart:
     """Build a table for each source and kind; values out of tolerance are marked ``!``."""
-    of_sources = (block for source, outcomes in findings for block in _of_source(source, outcomes))
-    return ReportPart("", (*of_sources, _sum(findings)))
+    of_sources = (
+        block for source, outcomes in findings for block in _source_blocks(source, outcomes)
+    )
+    return ReportPart("", (*of_sources, _total(findings)))
 
 
 def figures(outcome: CaseOutcome) -> tuple[str, ...]:
@@ -88,7 +92,7 @@ def _rounded(value: float, decimals: int) -> str:
     return text.rstrip("0").rstrip(".") if decimals else text
 
 
-def _case(source: Source, outcome: CaseOutcome) -> dict[str, Any]:
+def _case_document(source: Source, outcome: CaseOutcome) -> dict[str, Any]:
     case = outcome.case
     return {
         "source": source.title,
@@ -100,7 +104,7 @@ def _case(source: Source, outcome: CaseOutcome) -> dict[str, Any]:
     }
 
 
-def _of_source(source: Source, outcomes: Sequence[CaseOutcome]) -> Iterator[Block]:
+def _source_blocks(source: Source, outcomes: Sequence[CaseOutcome]) -> Iterator[Block]:
     def cell(outcome: CaseOutcome, name: str) -> Cell:
         text = figures(outcome)[COLUMNS.index(name)]
         if outcome.within:
@@ -114,11 +118,11 @@ def _of_source(source: Source, outcomes: Sequence[CaseOutcome]) -> Iterator[Bloc
     yield Heading(source.title)
     for kind in by_kind(outcome.case for outcome in outcomes):
         of_kind = (outcome for outcome in outcomes if outcome.case.kind is kind)
-        yield table_of(_sentence(kind), of_kind, *fields)
+        yield table_of(_capitalised(kind), of_kind, *fields)
     yield from warned(f"{one.case.name}: {one.reason}" for one in outcomes if one.reason)
 
 
-def _sentence(text: str) -> str:
+def _capitalised(text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
@@ -130,7 +134,7 @@ def _count(number: int, name: str) -> str:
     return f"{number} {name}{'s' if number != 1 else ''}"
 
 
-def _sum(findings: Findings) -> Prose:
+def _total(findings: Findings) -> Prose:
     outcomes = [outcome for _, each in findings for outcome in each]
     kinds = by_kind(outcome.case for outcome in outcomes)
     out = sum(not outcome.within for outcome in outcomes)
@@ -140,7 +144,7 @@ def _sum(findings: Findings) -> Prose:
     copied = sum(number for kind, number in kinds.items() if not kind.verifies)
     lines: list[Line] = [(Span(f"{checked}: {found}", State.FAIL if out else None),)]
     if totals:
-        lines.append(_sentence("; ".join(totals)))
+        lines.append(_capitalised("; ".join(totals)))
     if copied:
         lines.append(f"Not counted: {_count(copied, 'figure')} that are met by construction")
     return Prose(tuple(lines))
