@@ -22,12 +22,14 @@ def summary_document(summary: Summary) -> dict[str, Any]:
     """Return the JSON object of a summary.
 
     Values are in SI units and degrees, times are in UTC, and shares are fractions of 1; unknown
-    values are null.
+    values are null. The main keys are:
 
-    Keys: `profiles`, the number of profiles by status; `components` and `clamps`, with
-    distributions; `rules` and `limits`, with the frequency of violations; `limits_used`, the limits
-    that the rules apply; `responses` of the line as a whole, with exceedance curves and return
-    levels; `worst`, the worst profiles for each response.
+    - `profiles`: number of profiles by status
+    - `components`, `clamps`: distributions of the values of each part
+    - `rules`, `limits`: frequency of violations
+    - `limits_used`: limits that the rules apply
+    - `responses`: exceedance curves and return levels of the line as a whole
+    - `worst`: worst profiles for each response
     """
 
     def part_documents(*, clamped: bool) -> list[dict[str, Any]]:

@@ -66,20 +66,23 @@ def _entry_key(finding: Finding) -> Hashable:
 def check_document(assessments: Sequence[Assessment], *, every: bool = False) -> dict[str, Any]:
     """Return the JSON object of a design check; results without a solution are null.
 
+    From `situations` on, the value of each key is an object whose keys are the names of the
+    moorings. The main keys are:
+
+    - `verdict`, `state`: conclusion from all findings, and worst state
+    - `estimated`: number of findings based on estimates
+    - `accepted`: accepted findings with reasons
+    - `findings`, `findings_in_all`: listed findings, and number of all findings
+    - `situations`: solved situations in each environment
+    - `key_figures`: values of page one
+    - `launch`, `recovery`: deployment, and ascent after release
+    - `backup`, `losses`: net buoyancy after breaks, and after the loss of a float
+    - `inventory`, `totals`: pieces and clamps, and their totals
+    - `document`: document of the mooring file, if any
+
     Parameters
     ----------
     every : whether to list every finding instead of the selection made by `listed_findings`
-
-    Returns
-    -------
-    dict
-        Keys: `verdict`, the conclusion from all findings, and `state`, the worst state;
-        `estimated`, the number of findings based on estimates; `accepted`, the accepted findings
-        with reasons; `findings`, the listed findings, and `findings_in_all`, their total number;
-        `situations`, the solved situations of each mooring in each environment; the `key_figures`
-        of page one; `launch`, `recovery` and `backup`; `inventory`, and the `totals` of the
-        inventory; and `document` if a mooring file has one. The values from `situations` on are
-        objects whose keys are the names of the moorings.
     """
 
     def by_name(value_of: Callable[[Assessment], Any]) -> dict[str, Any]:

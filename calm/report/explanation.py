@@ -1,7 +1,7 @@
 """Reports that explain a mooring.
 
-They cover the mass and ascent of a mooring, the causes of its knockdown, the change that meets a
-target, and the comparison of two designs.
+The reports cover the mass and ascent of a mooring, the causes of its knockdown, the change that
+meets a target, and the comparison of two designs.
 """
 
 from __future__ import annotations

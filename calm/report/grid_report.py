@@ -1,4 +1,4 @@
-"""Report on gridded records: correlation scales, sections over time, and a description."""
+"""Report on gridded records: scales, sections over time, and text for a methods section."""
 
 from collections.abc import Mapping
 from pathlib import Path

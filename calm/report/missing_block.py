@@ -62,7 +62,7 @@ def missing_block(
 
     Parameters
     ----------
-    inventory : pieces and clamps; those of unknown mass in air are also listed
+    inventory : pieces and clamps, from which missing masses in air are listed
     """
     found = list(findings)
     figures = [one.missing for one in found if one.missing is not None]

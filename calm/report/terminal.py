@@ -1,4 +1,4 @@
-"""Rendering of report blocks on a terminal: tables have no rules, and colour is not needed."""
+"""Rendering of report blocks on a terminal, without table rules and legible without colour."""
 
 import re
 from collections.abc import Iterable, Iterator, Sequence

@@ -23,11 +23,16 @@ _SMALL = 1e-3
 def verification_document(findings: Findings) -> dict[str, Any]:
     """Return the JSON object of a verification.
 
-    The keys are `calm`; `checked`, the number of checked values; `out`, the number of values out of
-    tolerance; `kinds`, the number of values of each kind; and `cases`. Values that agree by
-    construction are not counted in `checked`. `cases` has one object per value, with the keys
-    `source`, `name`, `kind`, `expected`, `got`, `difference`, `tolerance`, `unit`, `why` (the
-    reason for the tolerance), `within`, and `reason` if no value was computed.
+    Values that agree by construction are not counted in `checked`. The keys are:
+
+    - `calm`: version of CALM
+    - `checked`: number of checked values
+    - `kinds`: number of values of each kind
+    - `out`: number of values out of tolerance
+    - `cases`: list with one object per value
+
+    The keys of a case are `source`, `name`, `kind`, `expected`, `got`, `difference`, `tolerance`,
+    `unit`, `why` (the reason for the tolerance), `within`, and `reason` if no value was computed.
     """
     cases = [
         _case_document(source, outcome) for source, outcomes in findings for outcome in outcomes
@@ -62,9 +67,9 @@ def verification_part(findings: Findings) -> ReportPart:
 def figures(outcome: CaseOutcome) -> tuple[str, ...]:
     """Format the outcome of a case as a row, in the order of `COLUMNS`.
 
-    The computed value and the difference are given to one decimal place more than the tolerance,
-    or to two more if the expected value has at least two more than the tolerance. Further digits
-    are rounding errors that differ between machines.
+    The computed value and the difference have one decimal place more than the tolerance, or two
+    more if the expected value has at least two more. Further digits are rounding errors that differ
+    between machines.
     """
     case = outcome.case
     expected = f"{case.expected:.12g}"

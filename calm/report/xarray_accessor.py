@@ -23,8 +23,8 @@ class BatchAccessor:
     """Access to the batch results of a part of the line, by the label of the part.
 
     Labels are as in the mooring file. The label ``top`` means the first component, even if another
-    part has that label. Data are loaded lazily. All methods raise UsageError if the line
-    has no part with the given label.
+    part has that label. Data are loaded lazily. All methods raise UsageError if the line has no
+    part with the given label.
 
     >>> dataset.calm.knockdown("adcp").max()  # doctest: +SKIP
     """

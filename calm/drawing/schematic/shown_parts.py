@@ -125,7 +125,7 @@ def one_line(text: str) -> str:
 
 
 Cells = Callable[[str, float], tuple[str, ...]]
-"""Function that returns the values of a row, given its length or position and its depth [m]."""
+"""Function that returns the values of a row, given length or position as text, and depth [m]."""
 
 
 def _parts(pieces: Sequence[Piece], cells: Cells, levels: Levels) -> Iterator[ShownPart]:

@@ -49,7 +49,11 @@ LINES = (Symbol.CHAIN, Symbol.WIRE, Symbol.ROPE)
 
 @dataclass(frozen=True)
 class Sign:
-    """A symbol, how often it is repeated, and whether it contains an ADCP that looks up or down."""
+    """A symbol and the number of its repetitions.
+
+    `sounding` is true if the symbol contains an ADCP; `up` and `down` are true if the ADCP looks in
+    these directions.
+    """
 
     symbol: Symbol
     count: int = 1

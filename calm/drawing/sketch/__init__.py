@@ -1,7 +1,7 @@
 """Drawings of a solved line in a terminal: side view, plan, tension, and current by depth.
 
-A drawing consists of braille dots and is returned as one text for each row of cells. A drawing can
-have any size. From 20 by 6 cells on, it has scales; larger drawings show more.
+A drawing consists of braille dots and is returned as one text for each row of cells. Drawings can
+have any size. Drawings of at least 20 by 6 cells have scales; larger drawings show more.
 """
 
 from collections.abc import Iterable, Sequence
