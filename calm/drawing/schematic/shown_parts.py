@@ -154,7 +154,7 @@ def _sign(of: Piece | Clamp, levels: Levels) -> Sign:
 
 
 def afloat(sign: Sign) -> Sign:
-    """Return the symbol for a float at the surface: the sphere if it is a sphere, else the buoy."""
+    """Return the symbol for a float at the surface: spheres remain spheres, others become buoys."""
     return sign if sign.symbol is Symbol.SPHERE else replace(sign, symbol=Symbol.BUOY)
 
 
