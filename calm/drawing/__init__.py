@@ -1,5 +1,5 @@
-"""Pictures: side view and plan of a line, its parts, and graphs.
+"""Drawings of a line (side view, plan and schematic), and graphs.
 
-Pictures of a line are first described in metres, independently of the medium. Each medium has a
-module that draws them.
+A side view or plan is first described in metres, independently of the output format. Each output
+format has a module that draws the picture.
 """

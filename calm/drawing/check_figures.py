@@ -1,6 +1,7 @@
 """Figures of a design check: the mooring to scale, the loads, and line symbols for table rows.
 
-They are black on white, so that no information depends on colour. Lengths are in points.
+All figures are black, grey and white, so that no information depends on colour. Lengths are in
+points.
 """
 
 import re
@@ -27,7 +28,7 @@ from calm.physics.line import Floats
 from calm.quantities import QUANTITIES
 
 FONT = 8.0
-"""Font size, also the smallest size."""
+"""Font size of all texts."""
 ROW_WIDTH = 52.0
 """Width of the line symbols in table rows."""
 INK, GREY, PALE = "black", "#6e6e6e", "#cdcdcd"
@@ -50,10 +51,10 @@ class DrawnCase:
 
 @dataclass(frozen=True)
 class Label:
-    """A label that is drawn next to the line, with its part, its text, and the depth as text.
+    """A label next to the line, with its part, its text, and the depth as text.
 
     `at` is the depth of the part and its position to the east and north [m]; None for a cable.
-    `tag` holds the mark of the open finding on this part, and the number of this finding.
+    `tag` is the mark and the number of the open item on this part.
     """
 
     part: ShownPart
@@ -152,7 +153,7 @@ def elevation(
                       fill="none", stroke=GREY, stroke_width=0.35)  # fmt: skip
         page.circle(px, py, 1.9, fill="white" if hollow else INK, stroke=INK, stroke_width=0.6)
     if listed:
-        _draw_labels(page, listed, flow + room + 28.0, width, height)
+        _draw_labelled_line(page, listed, flow + room + 28.0, width, height)
     return grey(svg_text(page)), scale
 
 
@@ -204,10 +205,9 @@ def _draw_flow(page: Pen, leg: LegResult, sea: float, scale: float) -> None:
         page.letters(x + 1.5, y - 5.0, text, size=FONT, colour=INK)
 
 
-def _draw_labels(
+def _draw_labelled_line(
     page: Pen, labels: Sequence[Label], at: float, width: float, height: float
 ) -> None:
-    """Draw the line, not to scale, with the symbols, names and depths of its parts."""
     pitch = (height - _ABOVE) / len(labels)
     levels = [_level(number, len(labels), height) for number in range(len(labels))]
     pen = page.draw("g", stroke=INK, stroke_width=0.9, stroke_linejoin="round", fill=INK)
@@ -303,11 +303,8 @@ def beside_row(part: ShownPart, height: float, *, first: bool = False, last: boo
 
 
 def _row_picture(height: float, title: str) -> Pen:
-    """Return a picture without background, because a background would hide the rules of the
-    table.
-    """
     page = picture(ROW_WIDTH, height, title)
-    page.element.remove(page.element[-1])
+    page.element.remove(page.element[-1])  # a background would hide the rules of the table
     return page
 
 

@@ -137,7 +137,7 @@ def moments(begin: np.datetime64, end: np.datetime64, most: int) -> list[Tick]:
         int(each) for each in np.array([begin, end], f"datetime64[{unit}]").astype("i8")
     )
     if unit == "D" and count > 1:
-        times = _days(edges.astype("datetime64[M]"), count)
+        times = _days_of_months(edges.astype("datetime64[M]"), count)
     else:
         base = 1970 if unit == "Y" else 0  # years are counted from then
         whole = np.arange((since + base) // count * count, until + base + 1, count) - base
@@ -155,9 +155,10 @@ def seconds(times: Any) -> NDArray[np.float64]:
     return np.asarray(times.astype("datetime64[ms]").astype("i8") / 1e3)
 
 
-def _days(months: Any, step: int) -> Any:
-    """Return days of each month in equal steps from the first day; days just before the next month
-    are omitted.
+def _days_of_months(months: Any, step: int) -> Any:
+    """Return every `step`-th day of each month from the first.
+
+    Days just before the first day of the next month are omitted.
     """
     each = np.arange(months[0], months[1] + 1).astype("datetime64[D]")
     return (each[:, None] + np.arange(0, 29 - step // 2, step)).ravel()
@@ -195,7 +196,7 @@ class Stroke(NamedTuple):
     square: bool = False
 
     def attributes(self) -> dict[str, float | str]:
-        """Attributes that give this stroke to an SVG element."""
+        """Return the attributes that give this stroke to an SVG element."""
         written: dict[str, float | str] = {"stroke": self.colour, "stroke_width": self.width}
         if self.dashes:
             written["stroke_dasharray"] = " ".join(f"{each:g}" for each in self.dashes)
@@ -279,7 +280,7 @@ class Graph:
 
 
 class Axes:
-    """Drawing area with two scales. Draw the frame last, with `frame`."""
+    """Drawing area with two scales. Call `frame` last."""
 
     def __init__(
         self,

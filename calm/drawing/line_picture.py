@@ -122,7 +122,7 @@ def elevation_of(
         return LinePicture(
             (line,), marks, across, depth, ship, *edges, height, water, environment.depth
         )
-    lines = [*_beds(result), *([] if uncertain is None else [_band(uncertain)])]
+    lines = [*_seabeds(result), *([] if uncertain is None else [_uncertainty_band(uncertain)])]
     lines += [from_the_side(shape, plane, LineKind.BESIDE) for shape in overlays]
     legs = result.legs
     still = [leg.still_shape for leg in legs if leg.still_shape is not None]
@@ -166,10 +166,8 @@ def from_the_side(
     return Polyline(kind, along(shape.x, shape.y, plane), shape.depth, label)
 
 
-def _beds(result: AnyResult) -> Iterator[Polyline]:
-    """Yield the seabed near each anchor that is on a slope, or in shallower water than the deepest
-    anchor.
-    """
+def _seabeds(result: AnyResult) -> Iterator[Polyline]:
+    """Yield the seabed at each anchor on a slope, or in shallower water than the deepest anchor."""
     plane, legs = plane_of(result), result.legs
     drawn = np.concatenate([along(leg.shape.x, leg.shape.y, plane) for leg in legs])
     stand = [leg for leg in legs if leg.leg.anchored]
@@ -184,10 +182,7 @@ def _beds(result: AnyResult) -> Iterator[Polyline]:
             yield Polyline(LineKind.SEABED, place, water.depth + slope * (place - at))
 
 
-def _band(uncertain: Uncertain) -> Polyline:
-    """Return the outline of the area between the 5 and 95 % values of offset and depth along the
-    line.
-    """
+def _uncertainty_band(uncertain: Uncertain) -> Polyline:
     (near, *_, far), (high, *_, low) = uncertain.offset, uncertain.depth_top
     return Polyline(
         LineKind.BAND,
@@ -244,7 +239,7 @@ def seabed_of(result: AnyResult) -> float:
 
     This seabed is at an anchor, or at the end of a slope that is drawn.
     """
-    beds = (float(bed.y.max()) for bed in _beds(result))
+    beds = (float(bed.y.max()) for bed in _seabeds(result))
     return max(*(float(one.water.depth) for one in (result, *result.legs)), *beds)
 
 

@@ -15,7 +15,7 @@ _PAGE = b"""#set page(width: auto, height: auto, margin: 0pt)
 
 
 def check_format(path: Path) -> None:
-    """Raise UsageError if the suffix of a file name is not that of a picture format.
+    """Raise UsageError unless a file name ends in a suffix from `FORMATS`.
 
     The message lists the allowed formats.
     """

@@ -59,7 +59,7 @@ def figure_svg(figure: Figure) -> str:
 
 
 def plot_elevation(side: LinePicture, ax: Axes | None = None) -> Axes:
-    """Draw a side view on matplotlib axes; by default, these are on a new figure."""
+    """Draw a side view on matplotlib axes, by default on a new figure."""
     if ax is None:
         ax = empty_figure(6.0, 6.0, layout="constrained").subplots()
     if side.surface:

@@ -1,7 +1,7 @@
 """Position that best fits acoustic ranges, and its uncertainty.
 
 Rays are straight lines from the ship's transducer. The residuals of accepted ranges are assumed to
-be normal with equal variance. This module also writes the position to the mooring file.
+be normal with equal variance. This module also writes the position into the text of a mooring file.
 """
 
 from dataclasses import asdict, dataclass
@@ -23,16 +23,16 @@ from calm.ranging.ranges import Sound, Survey, read_ranges
 
 CONFIDENCE = 0.95
 MISSED = 0.25
-"""Median residual, as a share of the ranges, above which the fit is rejected."""
+"""Median residual, relative to the median range, above which the fit is rejected."""
 SCATTERED, SCATTERED_SHARE = 10.0, 0.005
-"""Scatter above normal ranging errors: fixed part [m], and share of the ranges."""
+"""Largest usual scatter of ranges: a constant [m] plus a fraction of the median range."""
 LEVEL = 0.05
-"""Minimum depth of the transponder below the ship, as a share of the ranges."""
+"""Minimum depth of the transponder below the ship, as a fraction of the median range."""
 MOST_REJECTED = 1.0 / 3.0
-"""Share of the ranges that may be rejected without a doubt."""
+"""Fraction of rejected ranges above which the position is doubtful."""
 FALL_BACK, LEAST_FALL_BACK = 0.1, 50.0
-"""Standard deviation of the distance between an anchor and its planned position: share of the
-depth, and minimum [m].
+"""Standard deviation of the distance between an anchor and its planned position: fraction of
+the depth, and minimum [m].
 """
 ODDS = 20.0
 """Minimum odds for choosing one of two positions."""
@@ -40,14 +40,14 @@ ODDS = 20.0
 
 @dataclass(frozen=True)
 class SecondPlace:
-    """Another position that also fits the ranges, within twice their scatter.
+    """Second position that fits the ranges nearly as well.
 
     Attributes
     ----------
     latitude, longitude : WGS 84 [degrees]
     distance : distance from the chosen position [m]
-    rms : root of the sum of squared residuals divided by the degrees of freedom [m]; NaN without
-        degrees of freedom
+    rms : square root of (sum of squared residuals / degrees of freedom) [m]; NaN without redundant
+        ranges
     """
 
     latitude: float
@@ -69,8 +69,8 @@ class Located:
         or if the ranges do not constrain the ellipse
     ellipse : both semi-axes [m], and bearing of the major axis [degrees]
     depth_95 : half of the 95 % interval of the depth [m]; 0 if the depth was given
-    rms : root of the sum of squared residuals of the ranges in use, divided by the degrees of
-        freedom [m]
+    rms : square root of (sum of squared residuals / degrees of freedom) of the ranges in use [m];
+        NaN without redundant ranges
     residuals : (n,) measured minus computed ranges [m]
     used : (n,) mask of the ranges in use; False for rejected ranges
     sound_speed : harmonic mean of the speed of sound along the ray [m/s]
@@ -145,8 +145,8 @@ def locate(
     sound : speed of sound that converts times to ranges, as a profile or a constant [m/s]
     depth : depth of the transponder [m]; None to estimate the depth
     near : planned latitude and longitude [degrees], used to choose between two positions that fit
-        the ranges; the distance of each from the planned position is compared with the usual
-        fallback of an anchor
+        the ranges; each position is judged by its distance from the planned position, relative to
+        the usual fallback of an anchor
 
     Raises
     ------
@@ -182,10 +182,10 @@ def locate(
         )
     scattered = SCATTERED + SCATTERED_SHARE * reach
     other = model.another_place(x, used, 2.0 * scattered)
-    x, other, undecided = _weighed(model, x, other, used, near, scattered)
+    x, other, undecided = _more_likely(model, x, other, used, near, scattered)
     residuals = model.residuals(x)
     freedom = int(used.sum()) - unknowns
-    rms = _scatter(residuals[used], freedom)
+    rms = _residual_deviation(residuals[used], freedom)
     place = model.place(x)
     latitude, longitude, found = frame.position(place)
     if depth is None and found - survey.transducer < LEVEL * reach:
@@ -245,7 +245,7 @@ def locate(
     )
 
 
-def _weighed(
+def _more_likely(
     model: range_model.RangeModel,
     x: Floats,
     other: Floats | None,
@@ -255,9 +255,9 @@ def _weighed(
 ) -> tuple[Floats, Floats | None, str]:
     """Choose the more likely of two positions, using the planned position if it is known.
 
-    The likelihood of a position combines the residuals of its ranges, relative to their scatter
-    [m], with its distance from the plan; both are assumed normal. The choice stays open if the odds
-    are low, or if the less likely position fits the ranges far better.
+    The likelihood combines the residuals of the ranges, relative to `scattered` [m], with the
+    distance from the planned position. Both are assumed to be normal. Both positions are kept if
+    the odds are low, or if the more likely position fits the ranges far worse.
 
     Returns
     -------
@@ -293,22 +293,20 @@ def _second(model: range_model.RangeModel, x: Floats, other: Floats, used: Boole
     latitude, longitude, _ = model.frame.position(model.place(other))
     freedom = int(used.sum()) - model.unknowns
     distance = float(np.linalg.norm((other - x)[:2]))
-    rms = _scatter(model.residuals(other)[used], freedom)
+    rms = _residual_deviation(model.residuals(other)[used], freedom)
     return SecondPlace(latitude, longitude, distance, rms)
 
 
-def _scatter(residuals: Floats, freedom: int) -> float:
-    """Return the root of the sum of squares divided by the degrees of freedom [m], or NaN."""
+def _residual_deviation(residuals: Floats, freedom: int) -> float:
     return sqrt(float(residuals @ residuals) / freedom) if freedom else nan
 
 
 def _intervals(
     jacobian: Floats, rms: float, freedom: int, depth_given: bool, farthest: float
 ) -> tuple[float, float, float, float]:
-    """Return semi-axes [m] and bearing [degrees] of the 95 % ellipse, and the depth interval.
+    """Return both semi-axes [m] and bearing [degrees] of the 95 % ellipse, and depth interval [m].
 
-    The bearing is in degrees; the depth interval is half of the 95 % interval. An interval that is
-    as wide as the longest range is NaN.
+    The depth interval is half of its 95 % interval. Intervals as wide as the longest range are NaN.
     """
     from scipy.stats import chi2, norm
     from scipy.stats import f as fisher
@@ -343,7 +341,9 @@ def _intervals(
 FAR = 2.0
 """Distance from the planned position, in water depths, above which the position is doubtful."""
 NEAR = 0.5
-"""Share of the distance to which reading degrees as degrees and minutes must reduce it."""
+"""Reading 48.18 as 48°18′ is suggested if it reduces the distance from the planned position to at
+most this fraction.
+"""
 DEEPER, DEEPER_SHARE = 30.0, 0.03
 """Difference from the planned depth above which the depth is doubtful: the larger of a value [m]
 and a share of the planned depth.
@@ -351,7 +351,7 @@ and a share of the planned depth.
 
 
 def located_mooring(path: Path) -> MooringFile:
-    """Read the mooring file to which a position belongs.
+    """Read the mooring file that is to receive the anchor position.
 
     Raises
     ------
@@ -381,8 +381,8 @@ def with_deployed(
 
     Returns
     -------
-    The mooring file with the position, its new text, sentences on the deviation from the planned
-    position, and doubts.
+    The mooring file, its new text, sentences on the deviation from the planned position, and
+    doubts.
 
     Raises
     ------
@@ -392,7 +392,7 @@ def with_deployed(
         The YAML of the file cannot be edited automatically, or the planned position suggests that
         latitude and longitude are exchanged.
     """
-    sentences, doubts = _beside_the_plan(before, located, water_depth)
+    sentences, doubts = _plan_deviation(before, located, water_depth)
     file = WorkingFile(path)
     position = {
         "latitude": f"{located.latitude:.6f} deg",
@@ -408,10 +408,10 @@ def with_deployed(
     return file, draft.text, sentences, doubts
 
 
-def _beside_the_plan(
+def _plan_deviation(
     file: MooringFile, located: Located, water_depth: float
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Describe the deviation from the planned position and depth, and list any doubts."""
+    """Return sentences on the deviation from the planned position and depth, and doubts."""
     planned, plan_depth = file.position, file.environment.depth
     assert plan_depth is not None  # a mooring always has a water depth
     deeper = water_depth - plan_depth

@@ -32,7 +32,10 @@ APART = 10.0
 
 @dataclass(frozen=True)
 class RangeModel:
-    """Model of the ranges to a position; the unknowns are east, north and, unless given, depth."""
+    """Model of the ranges to a transponder.
+
+    The unknowns are east, north and, unless the depth is given, up [m].
+    """
 
     survey: Survey
     sound: Sound
@@ -48,7 +51,7 @@ class RangeModel:
     def place(self, x: Floats) -> Floats:
         """Return the position (3,) that belongs to values `x` of the unknowns [m].
 
-        If the depth is given, it is measured from the curved sea surface.
+        A given depth is measured from the curved sea surface.
         """
         if self.depth is None:
             return x
@@ -86,7 +89,7 @@ class RangeModel:
         count = len(self.ships)
         used = np.ones(count, dtype=bool)
         if count <= self.unknowns + SPARE:
-            fits = (self.least_squares(start, used) for start in self._starts())
+            fits = (self.least_squares(start, used) for start in self._start_positions())
             return min(fits, key=lambda x: float(np.sum(self.residuals(x) ** 2))), used
         x = self._robust_fit()
         residuals = np.abs(self.residuals(x))
@@ -101,11 +104,10 @@ class RangeModel:
         return x, used
 
     def _robust_fit(self) -> Floats:
-        """Return the unknowns of the best robust fit from several starting positions."""
         from scipy.optimize import least_squares
 
         found = []
-        for start in self._starts():
+        for start in self._start_positions():
             x, scale = start, 0.1 * float(np.median(self.measured(start)))
             for _ in range(4):
                 fit = least_squares(
@@ -117,8 +119,8 @@ class RangeModel:
             found.append((float(np.log1p((self.residuals(x) / FLOOR) ** 2).sum()), x))
         return min(found, key=lambda each: each[0])[1]
 
-    def _starts(self) -> list[Floats]:
-        """Return starting positions: below the middle of the survey, and towards its four sides."""
+    def _start_positions(self) -> list[Floats]:
+        """Return positions below the middle of the survey, and towards its four sides."""
         middle = self.ships.mean(axis=0)
         _, _, axes = np.linalg.svd((self.ships - middle)[:, :2], full_matrices=True)
         reach = float(np.median(self.measured(np.array([0.0, 0.0, -1000.0])[: self.unknowns])))
@@ -205,7 +207,9 @@ class RangeModel:
             again = residuals(fit.x)
             much_better = np.median(np.abs(again)) < 0.1 * np.median(np.abs(own))
             if much_better and abs(fit.x[-1] / factor - 1.0) < 0.05:
-                raise UsageError(f"{self.survey.path}: {_doubled(self.survey.timed, factor)}")
+                raise UsageError(
+                    f"{self.survey.path}: {_doubling_error(self.survey.timed, factor)}"
+                )
         if used.sum() < unknowns + 3:
             return []
         fit = least_squares(lambda y: residuals(y)[used], np.append(x, 1.0), x_scale="jac")
@@ -225,16 +229,15 @@ class RangeModel:
     def another_place(self, x: Floats, used: Booleans, scatter: float) -> Floats | None:
         """Find another position that fits the ranges nearly as well.
 
-        A position also counts if its residuals are within a given scatter. Return None if there is
-        no such position. The search starts on both sides of the track.
+        Return None if there is no such position. The search starts on both sides of the track.
 
         Parameters
         ----------
         x : unknowns of the fitted position
         used : mask of the ranges in use
-        scatter : largest root mean square residual that also counts as a fit [m]
+        scatter : root mean square residual up to which any position counts as a fit [m]
         """
-        starts = [mirrored(self.ships[used], self.place(x))[: len(x)], *self._starts()]
+        starts = [mirrored(self.ships[used], self.place(x))[: len(x)], *self._start_positions()]
         fits = [self.least_squares(start, used) for start in starts]
         if self.depth is None:  # another place also counts if it fits at the depth of this one
             same = replace(self, depth=self.frame.position(x)[2])
@@ -257,8 +260,7 @@ def scatter(residuals: Floats, unknowns: int) -> float:
     return max(1.4826 * float(np.median(residuals)) * sqrt(count / freedom), FLOOR)
 
 
-def _doubled(timed: bool, factor: float) -> str:
-    """Describe the probable error if the ranges fit better with a factor of two or one half."""
+def _doubling_error(timed: bool, factor: float) -> str:
     instead = "give the distance from the ship to the transponder"
     meant = {
         (True, 2.0): "one-way times, but two-way times (there and back) are needed",

@@ -7,8 +7,9 @@ that locate an anchor by ranges:
 
 - five columns: degrees and minutes of latitude and of longitude, and one-way time in seconds
   (WHOI);
-- three columns with range, latitude and longitude; the rows above have the target, then water
-  depth, height of the release and depth of the transducer, then the drop position (NOC).
+- three columns: range, latitude and longitude. Above the ranges are a row with the target, if any,
+  a row with water depth, height of the release and depth of the transducer, and a row with the drop
+  position (NOC).
 """
 
 from __future__ import annotations
@@ -112,13 +113,13 @@ def read_ranges(path: Path, transducer: float = 0.0, hemisphere: str = "") -> Su
             text = row.cells[places[name]]
             try:
                 bare = not re.match(r"[+-]|.*[NSEWnsew]", text.strip())
-                figure = _figure(name, text, heads[name])
+                figure = _parsed_cell(name, text, heads[name])
                 numbers.append(figure * (signs.get(name, 1.0) if bare else 1.0))
             except ValueError as error:
                 problems.append(row.problem(f"`{name}: {shown(text)}` {error}", places[name]))
         if len(numbers) == 3:
             values.append((row.number, numbers[0], numbers[1], numbers[2]))
-    problems += _misplaced(path, values)
+    problems += _position_problems(path, values)
     if problems:
         raise InputError(delimited.abridged(problems))
     if columns.others:
@@ -161,8 +162,8 @@ def hemisphere_signs(letters: str) -> dict[str, float]:
     return signs
 
 
-def _figure(name: str, text: str, factor: float) -> float:
-    """Parse a cell to SI units or degrees; raise ValueError with the reason if it is invalid."""
+def _parsed_cell(name: str, text: str, factor: float) -> float:
+    """Parse a cell to SI units or degrees; raise ValueError with a reason if it is invalid."""
     placed = name in HEMISPHERES
     if re.sub(r"\.0*$", "", text) in _FILLS:
         leave = "remove the row" if placed else "leave the cell blank"
@@ -186,8 +187,7 @@ def _figure(name: str, text: str, factor: float) -> float:
     return value
 
 
-def _misplaced(path: Path, values: list[tuple[int, float, float, float]]) -> list[Problem]:
-    """Report fill values, and positions far from the rest of the survey."""
+def _position_problems(path: Path, values: list[tuple[int, float, float, float]]) -> list[Problem]:
     problems = []
     places = []
     for line, latitude, longitude, _ in values:
@@ -325,7 +325,7 @@ def _survey_table(path: Path) -> tuple[delimited.TextTable, float | None, list[s
     if columns == 5 and all(0.0 <= float(cells[at]) < 60.0 for _, cells in rows for at in (1, 3)):
         header = "latitude,longitude,time[s]"
         lines = [
-            (number, f"{_placed(cells[:2])},{_placed(cells[2:4])},{2.0 * float(cells[4]):.9g}")
+            (number, f"{_angle(cells[:2])},{_angle(cells[2:4])},{2.0 * float(cells[4]):.9g}")
             for number, cells in rows
         ]
         note = (
@@ -343,15 +343,12 @@ def _survey_table(path: Path) -> tuple[delimited.TextTable, float | None, list[s
             f"{release:g} m above the seabed are ignored; set them with --depth and --above-seabed"
         )
     else:
-        return _joined(delimited.read_table(path, EXAMPLE)), None, []
+        return _with_joined_positions(delimited.read_table(path, EXAMPLE)), None, []
     return delimited.read_table(path, EXAMPLE, [(1, header), *lines]), transducer, [note]
 
 
 def _bare_rows(path: Path) -> list[_BareRow]:
-    """Read the rows of a purely numeric file in which all rows have the same length.
-
-    The result is empty for other files.
-    """
+    """Read the rows of a purely numeric file with rows of equal length; [] for other files."""
     whole = enumerate(read_text(path, largest=_LARGEST).splitlines(), 1)
     bare = ((number, re.split("[%#]", line)[0].strip()) for number, line in whole)
     lines = [(number, line) for number, line in bare if line]
@@ -363,9 +360,9 @@ def _bare_rows(path: Path) -> list[_BareRow]:
 
 
 def _row_of_depths(rows: Sequence[_BareRow]) -> int:
-    """Return the number of the row with the depths: 1, or 2 if the target is above it.
+    """Return the number of the row with the depths: 1, or 2 if the target is above it; else 0.
 
-    Return 0 if there is none. The last two cells of all other rows must be positions of one survey.
+    The last two cells of all other rows must be positions of one survey.
     """
     if len(rows) <= 4:
         return 0
@@ -376,23 +373,20 @@ def _row_of_depths(rows: Sequence[_BareRow]) -> int:
     return 0
 
 
-def _placed(cells: Sequence[str]) -> str:
-    """Join the cells of degrees, minutes and hemisphere to one cell."""
+def _angle(cells: Sequence[str]) -> str:
+    """Join degrees, minutes and hemisphere in one cell."""
     degrees, *rest = (cell.strip() for cell in cells)
     degrees = re.sub(r"\.0*$", "", degrees)
     return " ".join([degrees, *rest]).strip()
 
 
-def _joined(table: delimited.TextTable) -> delimited.TextTable:
-    """Join degrees and minutes of positions in one cell, in the column of the degrees.
-
-    The column of a time of day is renamed, so that it is not mistaken for travel times.
-    """
+def _with_joined_positions(table: delimited.TextTable) -> delimited.TextTable:
+    """Join degrees and minutes of positions in one cell, in the column of the degrees."""
     rows, header = list(table.rows), list(table.header.cells)
     for j, cell in enumerate(header):
         of_day = any(":" in row.cells[j] for row in rows if j < len(row.cells))
         if of_day and heading(cell) == (cell.strip(), ""):
-            header[j] = f"clock {cell}"
+            header[j] = f"clock {cell}"  # not to be mistaken for travel times
     parts: dict[str, dict[str, int]] = {}
     for j, cell in enumerate(table.header.cells):
         if found := _PART.fullmatch(cell.strip()):
@@ -409,6 +403,6 @@ def _joined(table: delimited.TextTable) -> delimited.TextTable:
         if len(cells) == len(header):
             for at in split.values():
                 chosen = [cells[at[kind]] for kind in ("deg", "min", "hem") if kind in at]
-                cells[at["deg"]] = _placed(chosen)
+                cells[at["deg"]] = _angle(chosen)
             rows[i] = row._replace(cells=cells)
     return replace(table, header=table.header._replace(cells=header), rows=rows)

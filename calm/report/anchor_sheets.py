@@ -297,7 +297,7 @@ def located_part(located: Located, water_depth: float) -> ReportPart:
         blocks.Pairs(_located_figures(located, water_depth)),
         *blocks.warned(located.warnings),
         *sentences,
-        _residuals(located),
+        _residuals_table(located),
         blocks.Note(tuple(notes)),
     )
     return ReportPart("Anchor position", shown)
@@ -326,8 +326,7 @@ def _located_figures(located: Located, water_depth: float) -> tuple[tuple[str, s
     return tuple(pairs)
 
 
-def _residuals(located: Located) -> Table:
-    """Tabulate the residuals, one row per range, in file order."""
+def _residuals_table(located: Located) -> Table:
     survey, used = located.survey, located.used
     decimals, measured = (4, ("time", "s")) if survey.timed else (1, ("range", "m"))
 

@@ -163,7 +163,7 @@ def levels_tables(summary: Summary) -> Iterator[Table | Prose]:
         fits = [fit for fit in response.return_levels if isinstance(fit, Fit)]
         rows = [
             (METHODS[fit.method], each.period, quantity.format(each.level),
-             " – ".join(_ends(each, quantity, "not set")))
+             " – ".join(_interval_ends(each, quantity, "not set")))
             for fit in fits for each in fit.levels
         ]  # fmt: skip
         if fits:
@@ -174,18 +174,18 @@ def levels_tables(summary: Summary) -> Iterator[Table | Prose]:
                 number("return period", 1, "years"),
                 number("level", 2, quantity.display_unit),
                 number("95 % interval", 3, quantity.display_unit),
-                note=" ".join(map(_fitted, fits)),
+                note=" ".join(map(_fit_text, fits)),
             )
     for reason in batch_summary.refusals(summary):
         yield Prose((f"{reason[0].upper()}{reason[1:]}.",), State.UNKNOWN)
 
 
-def _ends(level: Level, quantity: Quantity, unknown: str) -> Iterator[str]:
+def _interval_ends(level: Level, quantity: Quantity, unknown: str) -> Iterator[str]:
     for end in (level.low, level.high):
         yield unknown if end is None else quantity.format(end)
 
 
-def _fitted(fit: Fit) -> str:
+def _fit_text(fit: Fit) -> str:
     fitted = f"location {fit.location:.4g}, scale {fit.scale:.4g}, shape {fit.shape:.3f}"
     return f"{METHODS[fit.method]}: {fitted}; {fit.rules}."
 
@@ -242,19 +242,19 @@ def summary_part(summary: Summary) -> ReportPart:
     shown: tuple[blocks.Block, ...] = (
         blocks.Heading(summary.name),
         Prose((batch_summary.extent(summary), (ended,))),
-        _parts(summary),
+        _parts_table(summary),
         replace(batch_summary.rules_table(summary), title="", note=""),
         *blocks.warned(filter(None, [batch_summary.left_out(summary)])),
         *batch_summary.stops_tables(summary),
         batch_summary.profiles_table("", worst),
-        *_levels(summary),
+        *_level_tables(summary),
         *blocks.warned(batch_summary.refusals(summary)),
         blocks.quiet(_ALL),
     )
     return ReportPart("", shown)
 
 
-def _parts(summary: Summary) -> Table:
+def _parts_table(summary: Summary) -> Table:
     def extreme(part: Any, name: str, of: Callable[[Distribution], float]) -> str:
         one = getattr(part, name)
         return "-" if one is None else QUANTITIES[name].format(of(one))
@@ -268,8 +268,7 @@ def _parts(summary: Summary) -> Table:
     return table_of("", summary.parts, *fields)
 
 
-def _levels(summary: Summary) -> Iterator[Table]:
-    """Yield the table of return levels, if any were fitted."""
+def _level_tables(summary: Summary) -> Iterator[Table]:
     rows = []
     for response in summary.responses:
         quantity = QUANTITIES[QUANTITY[response.name]]
@@ -288,7 +287,7 @@ def _levels(summary: Summary) -> Iterator[Table]:
 def _level_text(level: Level | None, quantity: Quantity) -> str:
     if level is None:
         return "-"
-    return f"{quantity.format(level.level)}\n{'–'.join(_ends(level, quantity, '?'))}"
+    return f"{quantity.format(level.level)}\n{'–'.join(_interval_ends(level, quantity, '?'))}"
 
 
 _WIDTH = 533.0  # text width of an A4 page [pt]
@@ -325,10 +324,7 @@ def series_figure(summary: Summary) -> str:
 
 
 class _Panel(NamedTuple):
-    """Panel with the exceedance curves of one quantity, and the limit of this quantity.
-
-    A curve is a distribution with its stroke and label.
-    """
+    """Exceedance curves of one quantity, each with its stroke and label, and the design limit."""
 
     title: str
     name: str
@@ -343,7 +339,7 @@ def exceedance_figure(summary: Summary) -> str:
         one, limit = response.distribution, _limit_of(summary, response)
         curves = [] if one is None else [(one, Stroke(COLOURS[0], 1.5), "")]
         panels.append(_Panel(TITLES[response.name], QUANTITY[response.name], curves, limit))
-    return _shares("how often each value is exceeded", panels, 150.0)
+    return _exceedance_panels("how often each value is exceeded", panels, 150.0)
 
 
 def parts_figure(parts: Sequence[statistics.PartDistributions]) -> str:
@@ -358,11 +354,10 @@ def parts_figure(parts: Sequence[statistics.PartDistributions]) -> str:
             for (label, one), colour in zip(curves, COLOURS, strict=False)
         ]
         panels.append(_Panel(name, name, drawn))
-    return _shares("how often each value is exceeded, by part", panels, 200.0)
+    return _exceedance_panels("how often each value is exceeded, by part", panels, 200.0)
 
 
-def _shares(title: str, panels: Sequence[_Panel], tall: float) -> str:
-    """Draw panels in two columns, with a common vertical scale of fractions."""
+def _exceedance_panels(title: str, panels: Sequence[_Panel], tall: float) -> str:
     rows, wide = -(-len(panels) // 2), (_WIDTH - _LEFT - _RIGHT - _GAP) / 2
     page = Graph(_WIDTH, rows * (tall + _BELOW) + 6.0, title, _SIZE)
     least = min([0.1, *(one.share[-1] for panel in panels for one, _, _ in panel.curves)])

@@ -22,12 +22,14 @@ def summary_document(summary: Summary) -> dict[str, Any]:
     """Return the JSON object of a summary.
 
     Values are in SI units and degrees, times are in UTC, and shares are fractions of 1; unknown
-    values are null.
+    values are null. The main keys are:
 
-    Keys: `profiles`, the number of profiles by status; `components` and `clamps`, with
-    distributions; `rules` and `limits`, with the frequency of violations; `limits_used`, the limits
-    that the rules apply; `responses` of the line as a whole, with exceedance curves and return
-    levels; `worst`, the worst profiles for each response.
+    - `profiles`: number of profiles by status
+    - `components`, `clamps`: distributions of the values of each part
+    - `rules`, `limits`: frequency of violations
+    - `limits_used`: limits that the rules apply
+    - `responses`: exceedance curves and return levels of the line as a whole
+    - `worst`: worst profiles for each response
     """
 
     def part_documents(*, clamped: bool) -> list[dict[str, Any]]:
@@ -141,15 +143,14 @@ def rules_table(summary: Summary) -> Table:
         broken("at most", "fails_at_most", State.FAIL),
         broken("warns", "warns", State.WARN),
         number("limits", lambda rule: len(rule.exceedances), narrow=False),
-        words("most often exceeded by", _most_often),
+        words("most often exceeded by", _most_exceeded),
         note="Shares refer to the profiles in which a rule is judged. “At most” also counts every "
         "profile with a current that was not solved. A limit counts as unknown if it could not be "
         "judged in any profile.",
     )
 
 
-def _most_often(rule: RuleShare) -> str:
-    """Name the component that most often exceeds a limit of the rule, and count unknown results."""
+def _most_exceeded(rule: RuleShare) -> str:
     most = max(rule.exceedances, key=lambda one: one.share or 0.0, default=None)
     worst = ""
     if most and most.share:

@@ -101,14 +101,13 @@ class Table:
         count = len(self.columns)
         full = [row for row in self.rows if len(row) == count]
         kept = [at for at in range(count) if any(row[at] != _EMPTY for row in full)]
-        return self._of(kept) if full and len(kept) < count and not self.by_hand else self
+        return self._with_columns(kept) if full and len(kept) < count and not self.by_hand else self
 
     def narrow(self) -> Table:
         """Return the table for a narrow page, without the columns that do not fit."""
-        return self._of([n for n, one in enumerate(self.columns) if one.narrow])
+        return self._with_columns([n for n, one in enumerate(self.columns) if one.narrow])
 
-    def _of(self, kept: Sequence[int]) -> Table:
-        """Select columns by number; heading rows are kept."""
+    def _with_columns(self, kept: Sequence[int]) -> Table:
         rows = (row if len(row) == 1 else tuple(row[at] for at in kept) for row in self.rows)
         columns = tuple(self.columns[at] for at in kept)
         return replace(self, columns=columns, rows=tuple(rows))

@@ -1,8 +1,10 @@
 """Chart of cables in a uniform current for one value of K, on an A4 page.
 
-The main curve is graduated in the angle φ and the arc length s′. Three families of curves give
-length, distance and tension of the cable between two of its points, A and the higher B. L/H, D/H or
-T_A/(wH) is constant along each curve, which is the locus of the points P = (y′ of A, z′ of B).
+The main curve is graduated in the angle φ and the arc length s′. A cable is the part of this curve
+between its lower end A and its upper end B. Three families of curves show the ratios L/H, D/H and
+T_A/(wH). L is the length of the cable, D the horizontal distance and H the difference in height
+between A and B, T_A the tension at A, and w the weight per metre. Along each curve, which is the
+locus of the points P = (y′ of A, z′ of B), one of the ratios is constant.
 
 The module also reports the cables for three given quantities, as a table and as JSON.
 """
@@ -61,19 +63,24 @@ def draw_chart(k: float, lower_end: str = "below-90") -> Figure:
     """Draw the chart for one value of K (0 to 100) on an A4 page, without overlapping labels.
 
     `lower_end` states whether the angles at the lower ends of the cables are ``below-90`` or
-    ``above-90`` degrees. Raise UsageError if K is out of range, or for ``above-90`` at K = 0, where
-    the curve ends at 90°. The figure is not attached to a window.
+    ``above-90`` degrees. The figure is not attached to a window.
+
+    Raises
+    ------
+    UsageError
+        K is out of range, or K is 0 and `lower_end` is ``above-90``: for K = 0, the curve ends at
+        90°.
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-    points = _points(k)
+    points = _curve_points(k)
     above = lower_end == "above-90"
     if above and k == 0.0:
         raise UsageError("for K = 0 all angles are below 90°, so there is no chart above 90°")
     figure = empty_figure(*_PAGE)
     FigureCanvasAgg(figure)
     axes = figure.add_axes((0.1, 0.1, 0.85, 0.8))
-    _frame(axes, points, above)
+    _set_limits(axes, points, above)
     axes.plot(points.distance, points.height, color="black", linewidth=1.6, zorder=3)
     labels = Labels(axes)
     labels.avoid(points.distance, points.height)
@@ -85,10 +92,10 @@ def draw_chart(k: float, lower_end: str = "below-90") -> Figure:
     return figure
 
 
-def _points(k: float) -> CurvePoints:
+def _curve_points(k: float) -> CurvePoints:
     """Compute points of the curve from its apex to the upper edge of the page.
 
-    Points become ever closer towards the critical angle φ_c.
+    The spacing of the points decreases towards the critical angle φ_c.
     """
     critical = float(critical_angle(k))
     upright = float(curve(k, _RIGHT).height) if k > 0.0 else np.inf
@@ -102,13 +109,13 @@ def _points(k: float) -> CurvePoints:
 _COORDINATES = ("phi", "arc", "distance", "height", "tension")
 
 
-def _frame(axes: Axes, points: CurvePoints, above: bool) -> None:
-    """Set the axis limits, with room for the graduations on both sides of the curve."""
+def _set_limits(axes: Axes, points: CurvePoints, above: bool) -> None:
     left = float(points.distance[points.phi >= _RIGHT].min()) if above else 0.0
     right = float(points.distance.max())
     low = float(points.height[points.phi >= _RIGHT].min()) if above else 0.0
     high = float(points.height.max())
     width, height = right - left, high - low
+    # room for the graduations on both sides of the curve
     across = left - 0.02 * width, right + 0.12 * width
     axes.set(xlim=across, ylim=(low - 0.05 * height, high))
 
@@ -120,7 +127,7 @@ def _graduate(axes: Axes, labels: Labels, points: CurvePoints) -> None:
         if value <= degrees[-1]:
             long = value % 5 == 0
             size = 7.0 if value % 10 == 0 else 5.0 if long else 3.0
-            place = _place(points, degrees, value)
+            place = _point_at(points, degrees, value)
             labels.tick(*place, size, "black")
             if long:
                 labels.beside(f"{value}°", *place, size + 2.0, "black", 8.5)
@@ -128,15 +135,14 @@ def _graduate(axes: Axes, labels: Labels, points: CurvePoints) -> None:
     decade = 10.0 ** np.floor(np.log10(size))
     step = float(next(each * decade for each in (1.0, 2.0, 5.0, 10.0) if each * decade >= size))
     for count in range(1, int(points.arc[-1] / (step / 5.0)) + 1):
-        place = _place(points, points.arc, count * step / 5.0)
+        place = _point_at(points, points.arc, count * step / 5.0)
         size = -6.0 if count % 5 == 0 else -3.0
         labels.tick(*place, size, "#7a4b00")
         if count % 5 == 0:
             labels.beside(f"{count * step / 5.0:.4g}", *place, size - 2.0, "#7a4b00", 7.0)
 
 
-def _place(points: CurvePoints, scale: Floats, value: float) -> tuple[float, float, float]:
-    """Interpolate y′, z′ and φ at the point of the curve where `scale` has a given value."""
+def _point_at(points: CurvePoints, scale: Floats, value: float) -> tuple[float, float, float]:
     at = (float(np.interp(value, scale, getattr(points, name))) for name in _COORDINATES)
     phi, _, distance, height, _ = at
     return distance, height, phi
@@ -216,7 +222,7 @@ class Labels:
         from matplotlib.transforms import Bbox
 
         line = self.axes.transData.transform(np.column_stack([x, y]))
-        lengths = _lengths(line)
+        lengths = _arc_lengths(line)
         half = self._points  # one typographic point, in pixels
         for at in np.arange(0.0, lengths[-1], half):
             place = [np.interp(at, lengths, line[:, axis]) for axis in (0, 1)]
@@ -230,7 +236,7 @@ class Labels:
         angle : direction of the curve [rad]
         size : length of the tick in points; if negative, the tick is drawn to the left
         """
-        place, right = self._place(x, y, angle)
+        place, right = self._pixel_and_normal(x, y, angle)
         ends = np.array([place, place + right * size * self._points])
         across = self.axes.transData.inverted().transform(ends)
         self.axes.plot(*across.T, color=colour, linewidth=0.7, zorder=3)
@@ -239,21 +245,21 @@ class Labels:
         self, text: str, x: float, y: float, angle: float, size: float, colour: str, font: float
     ) -> None:
         """Write a label beyond the end of a tick; the tick is defined as in `tick`."""
-        place, right = self._place(x, y, angle)
+        place, right = self._pixel_and_normal(x, y, angle)
         side = right * np.sign(size)
         label = self._text(text, place, 0.0, colour, font)
         extent = label.get_window_extent()
         reach = 0.5 * (abs(side[0]) * extent.width + abs(side[1]) * extent.height)
         self._move(label, place + side * (abs(size) * self._points + reach))
-        self._keep(label)
+        self._keep_if_free(label)
 
     def along(self, text: str, path: Floats, colour: str, font: float) -> bool:
-        """Write a text along a line of points (n, 2), and return whether it was written.
+        """Write a text along a line of points (n, 2); return whether the text was written.
 
         The text is omitted if no position along the line is free.
         """
         line = self.axes.transData.transform(path)
-        lengths = _lengths(line)
+        lengths = _arc_lengths(line)
         if lengths[-1] < _SHORTEST * self._points:
             return False
         # Try positions from the middle outwards.
@@ -269,11 +275,11 @@ class Labels:
             slope = after - before
             turned = (np.degrees(np.arctan2(slope[1], slope[0])) + 90.0) % 180.0 - 90.0
             label = self._text(text, place, turned, colour, font)
-            if self._keep(label):
+            if self._keep_if_free(label):
                 return True
         return False
 
-    def _place(self, x: float, y: float, angle: float) -> tuple[Floats, Floats]:
+    def _pixel_and_normal(self, x: float, y: float, angle: float) -> tuple[Floats, Floats]:
         """Return a point in pixels, and the unit vector to the right of a curve at this point."""
         step = 1e-6
         here = np.array([x, y])
@@ -294,8 +300,7 @@ class Labels:
     def _move(self, label: Text, place: Floats) -> None:
         label.set_position(tuple(self.axes.transData.inverted().transform(place)))
 
-    def _keep(self, label: Text) -> bool:
-        """Keep a label if its position is free, else remove it."""
+    def _keep_if_free(self, label: Text) -> bool:
         box = label.get_window_extent().padded(_MARGIN * self._points)
         frame = self.axes.get_window_extent()
         inside = (
@@ -308,8 +313,7 @@ class Labels:
         return False
 
 
-def _lengths(line: Floats) -> Floats:
-    """Return the length along a line of points, from its first point to each point."""
+def _arc_lengths(line: Floats) -> Floats:
     return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
 
 

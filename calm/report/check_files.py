@@ -45,7 +45,7 @@ def listed_findings(
     """
     found = [*assessment.every_finding()]
     leading = {id(one) for one in governing_of_each_rule(found)}
-    leads = map(governing, grouped_by(found, _listed_as).values())
+    leads = map(governing, grouped_by(found, _entry_key).values())
     kept = leading | {
         id(lead)
         for lead in leads
@@ -56,8 +56,7 @@ def listed_findings(
             yield one, id(one) in leading
 
 
-def _listed_as(finding: Finding) -> Hashable:
-    """Return a key that is equal for findings with a common entry in the list."""
+def _entry_key(finding: Finding) -> Hashable:
     if finding.state not in GRAVE:
         return finding.rule, finding.state, finding.place
     place = finding.case if finding.case == "0" else finding.environment
@@ -67,20 +66,23 @@ def _listed_as(finding: Finding) -> Hashable:
 def check_document(assessments: Sequence[Assessment], *, every: bool = False) -> dict[str, Any]:
     """Return the JSON object of a design check; results without a solution are null.
 
+    From `situations` on, the value of each key is an object whose keys are the names of the
+    moorings. The main keys are:
+
+    - `verdict`, `state`: conclusion from all findings, and worst state
+    - `estimated`: number of findings based on estimates
+    - `accepted`: accepted findings with reasons
+    - `findings`, `findings_in_all`: listed findings, and number of all findings
+    - `situations`: solved situations in each environment
+    - `key_figures`: values of page one
+    - `launch`, `recovery`: deployment, and ascent after release
+    - `backup`, `losses`: net buoyancy after breaks, and after the loss of a float
+    - `inventory`, `totals`: pieces and clamps, and their totals
+    - `document`: document of the mooring file, if any
+
     Parameters
     ----------
     every : whether to list every finding instead of the selection made by `listed_findings`
-
-    Returns
-    -------
-    dict
-        Keys: `verdict`, the conclusion from all findings, and `state`, the worst state;
-        `estimated`, the number of findings based on estimates; `accepted`, the accepted findings
-        with reasons; `findings`, the listed findings, and `findings_in_all`, their total number;
-        `situations`, the solved situations of each mooring in each environment; the `key_figures`
-        of page one; `launch`, `recovery` and `backup`; `inventory`, and the `totals` of the
-        inventory; and `document` if a mooring file has one. The values from `situations` on are
-        objects whose keys are the names of the moorings.
     """
 
     def by_name(value_of: Callable[[Assessment], Any]) -> dict[str, Any]:
@@ -98,23 +100,23 @@ def check_document(assessments: Sequence[Assessment], *, every: bool = False) ->
         "verdict": max((each.verdict for each in assessments), key=[*Conclusion].index),
         "state": worst_state(each.state for each in assessments),
         "estimated": sum(one.state is State.ESTIMATED for one in listed(Assessment.all_findings)),
-        "accepted": listed(_accepted),
+        "accepted": listed(_accepted_documents),
         "limits": listed(
             lambda each: ({"mooring": each.name} | limit_document(key) for key in each.limits)
         ),
         "key_figures": by_name(key_figures),
         "not_judged": provenance.unjudged(one.leg.file.environment for one in in_environments),
-        "findings": listed(lambda each: _findings(each, every)),
+        "findings": listed(lambda each: _finding_documents(each, every)),
         "findings_in_all": len(listed(Assessment.every_finding)),
         "situations": by_name(
             lambda each: [
-                {"environment": stand.environment, **_situation(situation)}
+                {"environment": stand.environment, **_situation_document(situation)}
                 for stand in each.in_environments
                 for situation in stand.situations
             ]
         ),
-        "launch": by_name(lambda each: _handled(each.launch, _OF_LAUNCH)),
-        "recovery": by_name(lambda each: _handled(each.recovery, _OF_RECOVERY)),
+        "launch": by_name(lambda each: _handling_document(each.launch, _OF_LAUNCH)),
+        "recovery": by_name(lambda each: _handling_document(each.recovery, _OF_RECOVERY)),
         "backup": by_name(lambda each: [*map(asdict, each.backup)]),
         "losses": by_name(lambda each: [members(one, *_OF_LOSS) for one in each.losses]),
         "inventory": by_name(lambda each: [*map(asdict, each.inventory)]),
@@ -127,20 +129,19 @@ def limit_document(key: LimitKey) -> dict[str, Any]:
     return members(key, "name", "value", "default", "source", "departs")
 
 
-def _findings(assessment: Assessment, every: bool) -> Iterator[dict[str, Any]]:
-    """Yield the listed findings as JSON objects, with probabilities if these were computed."""
+def _finding_documents(assessment: Assessment, every: bool) -> Iterator[dict[str, Any]]:
     for one, leads in listed_findings(assessment, every=every):
         counted = members(one, "probability") if assessment.draws else {}
         yield one.to_dict() | {"governing": leads} | counted
 
 
-def _accepted(assessment: Assessment) -> Iterator[dict[str, Any]]:
+def _accepted_documents(assessment: Assessment) -> Iterator[dict[str, Any]]:
     for one in assessment.accepted_findings():
         by = members(one.accept, "reason", "by", "date", "until", "load")
         yield {"mooring": assessment.name, **members(one, "rule", "component"), **by}
 
 
-def _situation(situation: Situation) -> dict[str, Any]:
+def _situation_document(situation: Situation) -> dict[str, Any]:
     document: dict[str, Any] = {"situation": situation.name}
     if situation.failure is not None:
         return document | situation.failure.to_dict()
@@ -167,7 +168,9 @@ _OF_LOSS = ("index", "label", "margin", "weight_lifted", "required")
 _OF_RECOVERY = ("released", "rise_speed", "time_to_surface", "net_buoyancy", "order")
 
 
-def _handled(way: Launch | Recovery | None, names: Sequence[str]) -> dict[str, Any] | None:
+def _handling_document(
+    way: Launch | Recovery | None, names: Sequence[str]
+) -> dict[str, Any] | None:
     return None if way is None else members(way, *names) | {"components": way.components()}
 
 

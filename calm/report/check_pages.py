@@ -61,14 +61,14 @@ def checks_page(signed: SignedMooring) -> Iterator[Block]:
     findings = [*signed.assessment.every_finding()]
     yield checks_table(signed, findings)
     yield blocks.Heading("Accuracy of these values")
-    yield Prose((_trust(signed),))
+    yield Prose((_accuracy_sentences(signed),))
 
 
 def checks_table(signed: SignedMooring, findings: Sequence[Finding]) -> Table:
     """Tabulate the governing finding of each rule, in order of decreasing utilisation."""
     tags = item_tags(signed)
     rules = [(reported_findings(found), found) for found in by_rule(findings).values()]
-    rules.sort(key=lambda rule: _used_most(rule[0][0]))
+    rules.sort(key=lambda rule: _by_utilisation(rule[0][0]))
     rows = [
         (one, len({each.component for each in found}) if one is reported[0] else 0)
         for reported, found in rules
@@ -110,8 +110,7 @@ def checks_table(signed: SignedMooring, findings: Sequence[Finding]) -> Table:
     )  # fmt: skip
 
 
-def _used_most(finding: Finding) -> tuple[float, int]:
-    """Sort key: largest utilisation first, findings without a utilisation last."""
+def _by_utilisation(finding: Finding) -> tuple[float, int]:
     used = finding.utilisation
     return 1.0 if used is None else -used, -finding.state.severity
 
@@ -120,8 +119,7 @@ _A_DIFFERENCE = 0.1
 """Smallest difference between two knockdowns that is reported [m]."""
 
 
-def _trust(signed: SignedMooring) -> str:
-    """Return sentences on the uncertainty of the results."""
+def _accuracy_sentences(signed: SignedMooring) -> str:
     results = [one for case in signed.standing for one in case.results]
     if not results:
         return "The mooring has no equilibrium, so checks that need one were skipped."
@@ -140,22 +138,22 @@ def handling_page(signed: SignedMooring) -> Iterator[Block]:
     """Yield a summary of launch and recovery, net buoyancy after breaks, and the parts list."""
     assessment = signed.assessment
     if assessment.launch is not None or assessment.recovery is not None:
-        yield Beside((_launch(assessment),), (_recovery(assessment),))
+        yield Beside((_launch_table(assessment),), (_recovery_table(assessment),))
     else:
         of_net = "Launch and recovery of a net of legs are not checked."
         of_line = "Launch and recovery could not be computed."
         several = len({one.leg.name for one in assessment.in_environments}) > 1
         yield Prose((of_net if several else of_line,))
     if assessment.backup:
-        yield _breaks(assessment)
-    yield _inventory(signed)
+        yield _breaks_table(assessment)
+    yield _inventory_table(signed)
 
 
 def _pairs(title: str, rows: Iterable[tuple[str, str, str]]) -> Table:
     return table_of(title, rows, words("", 0), number("", 1), number("", 2), ruled=False)
 
 
-def _launch(assessment: Assessment) -> Table:
+def _launch_table(assessment: Assessment) -> Table:
     launch = assessment.launch
     if launch is None:
         return _pairs("Launch, anchor last", [("No solution", "", "")])
@@ -168,7 +166,7 @@ def _launch(assessment: Assessment) -> Table:
     most = governing(strong) if strong else None
     rows = [
         ("Touchdown speed" + drag, say("speed", launch.fall_speed),
-         _limit(assessment, "launch-speed")),
+         _limit_of_rule(assessment, "launch-speed")),
         ("Drag doubled or halved",
          f"{slow} to {fast} {QUANTITIES['speed'].display_unit}", ""),
         ("Anchor tension in descent", LOAD.say(launch.anchor_tension), ""),
@@ -179,7 +177,7 @@ def _launch(assessment: Assessment) -> Table:
     return _pairs("Launch, anchor last", rows)
 
 
-def _recovery(assessment: Assessment) -> Table:
+def _recovery_table(assessment: Assessment) -> Table:
     rise = assessment.recovery
     if rise is None:
         return _pairs("Recovery, after release", [("No solution", "", "")])
@@ -192,7 +190,7 @@ def _recovery(assessment: Assessment) -> Table:
         (
             f"Rise speed{still}",
             say("speed", rise.rise_speed),
-            _limit(assessment, "recovery"),
+            _limit_of_rule(assessment, "recovery"),
         ),
         ("First float at the surface after", "–" if first is None else duration(first), ""),
         ("Last float at the surface after", "–" if last is None else duration(last), ""),
@@ -203,13 +201,11 @@ def _recovery(assessment: Assessment) -> Table:
     return _pairs("Recovery, after release", rows)
 
 
-def _limit(assessment: Assessment, rule: str) -> str:
-    """Format the limit of a rule with one finding, and its utilisation if available."""
+def _limit_of_rule(assessment: Assessment, rule: str) -> str:
     return _limit_of([one for one in assessment.findings if one.rule == rule])
 
 
 def _limit_of(found: Sequence[Finding]) -> str:
-    """Format the limit of the governing finding among several, and its utilisation if available."""
     if not found:
         return ""
     lead = governing(found)
@@ -220,11 +216,7 @@ def _limit_of(found: Sequence[Finding]) -> str:
 _MOST_BREAKS = 10
 
 
-def _breaks(assessment: Assessment) -> Table:
-    """Tabulate the net buoyancy after a break or the loss of a float.
-
-    Only the most critical break of each section is listed.
-    """
+def _breaks_table(assessment: Assessment) -> Table:
     parts = {piece.index: piece for piece in assessment.file.pieces}
     groups: dict[str, list[Break]] = {}
     section = "the top"
@@ -281,14 +273,13 @@ def _breaks(assessment: Assessment) -> Table:
     )  # fmt: skip
 
 
-def _runs(numbers: Iterable[str]) -> list[str]:
-    """Shorten the item numbers of clamps to ranges, such as ``7a–7d``."""
+def _number_ranges(numbers: Iterable[str]) -> list[str]:
+    """Shorten item numbers to ranges, such as ``7a–7d``."""
     groups = groupby(dict.fromkeys(numbers), lambda one: re.sub(r"\D.*", "", one))
     return [run_of([*own]) for _, own in groups]
 
 
-def _inventory(signed: SignedMooring) -> Table:
-    """Tabulate number, length, mass and weight of each component type, with the item numbers."""
+def _inventory_table(signed: SignedMooring) -> Table:
     items = signed.assessment.inventory
     numbers = item_numbers(*signed.standing[0].results) if signed.standing else {}
     unit = LOAD.display_unit
@@ -312,7 +303,7 @@ def _inventory(signed: SignedMooring) -> Table:
         if group is items:
             missing = total_of(items).missing_masses
             return Cell(detail=f"{missing} without mass" if missing else "")
-        known = _runs(numbers[one.label] for one in group if one.label in numbers)
+        known = _number_ranges(numbers[one.label] for one in group if one.label in numbers)
         return Cell(detail=", ".join(known))
 
     def name(group: Sequence[InventoryItem]) -> str:
@@ -378,8 +369,6 @@ _UNJUDGED = 11
 
 
 def _limits(limits: Iterable[LimitKey]) -> Table:
-    """Tabulate the limits used, with the limits that the mooring file sets in bold."""
-
     def own(key: LimitKey) -> bool:
         return key.departs or key.default is None
 
@@ -391,7 +380,7 @@ def _limits(limits: Iterable[LimitKey]) -> Table:
     def source(key: LimitKey) -> Cell:
         usual = "" if key.default is None else f"; default {_value(key, key.default)}"
         return Cell(
-            detail=plain(f"set by the design{usual}" if own(key) else _in_short(key.source))
+            detail=plain(f"set by the design{usual}" if own(key) else _source_name(key.source))
         )
 
     return table_of(
@@ -409,8 +398,7 @@ def _value(key: LimitKey, value: float | None) -> str:
     return plain(limit_value_text(key, value))
 
 
-def _in_short(source: str) -> str:
-    """Shorten the source of a limit to its name, without quotations."""
+def _source_name(source: str) -> str:
     head = re.split(r"[:;]", source)[0]
     return head if len(head) <= 45 else head.split(",")[0]
 
@@ -420,10 +408,6 @@ _OF_SURFACE = ("safety_factor.surface", "minimum_reserve")
 
 
 def _limits_that_count(signed: SignedMooring) -> Iterator[LimitKey]:
-    """Yield the limits that apply to the mooring.
-
-    Limits for waves and for surface moorings are omitted if there are none.
-    """
     assessment = signed.assessment
     waves = any(one.leg.file.environment.waves for one in assessment.in_environments)
     surface = any(reaches_the_surface(one.leg) for one in assessment.in_environments if one.result)
@@ -437,7 +421,6 @@ _MOST_LEVELS = 12
 
 
 def _environment(waters: dict[str, Water], tides: Sequence[tuple[float, float]]) -> Table:
-    """Tabulate the current by level, or the strongest current of each of several environments."""
     if len(waters) > 1:
         rows = []
         for name, water in waters.items():
@@ -483,7 +466,6 @@ def _water_note(water: Water, tides: Sequence[tuple[float, float]]) -> str:
 
 
 def _history(file: MooringFile) -> Iterator[Table]:
-    """Yield a table of all revisions if page one cannot show them all."""
     given = file.document
     if given is not None and len(given.history) > MOST_REVISIONS:
         first = words("Revision", "revision", 0.0), words("Date", "date", 0.0)

@@ -51,17 +51,17 @@ _HALF = 0.5  # utilisation from which a check has a row
 def check_part(assessments: Sequence[Assessment]) -> ReportPart:
     """Build the summary of a design check; states have symbols, so that colour is not needed."""
     if len(assessments) > 1:
-        return ReportPart("", tuple(_of_many(assessments)))
-    return ReportPart("", tuple(_of_one(assessments[0])))
+        return ReportPart("", tuple(_matrix_blocks(assessments)))
+    return ReportPart("", tuple(_mooring_blocks(assessments[0])))
 
 
-def _of_one(assessment: Assessment) -> Iterator[blocks.Block]:
-    verdict = Prose((_head(assessment), _verdict(assessment)))
+def _mooring_blocks(assessment: Assessment) -> Iterator[blocks.Block]:
+    verdict = Prose((_name_and_kind(assessment), _verdict_line(assessment)))
     cases, checks = [*_cases(assessment)], [*_checks(assessment)]
     likely = [*likelihood_tables([(assessment.name, [*assessment.all_findings()])])]
-    items = [_in_short(one) for one in open_items(assessment, keys=True)]
+    items = [_shortened_item(one) for one in open_items(assessment, keys=True)]
     beyond = beyond_text([assessment])
-    room = MOST_LINES - _FRAME - sum(map(_height, (*cases, *checks, *likely)))
+    room = MOST_LINES - _FRAME - sum(map(_estimated_lines, (*cases, *checks, *likely)))
     fails = assessment.verdict is Conclusion.FAILS
     yield verdict
     yield from (*cases, *checks, *likely)
@@ -70,8 +70,7 @@ def _of_one(assessment: Assessment) -> Iterator[blocks.Block]:
     yield blocks.Note(beyond)
 
 
-def _head(assessment: Assessment) -> Line:
-    """Format the name of the mooring on the left and its kind on the right."""
+def _name_and_kind(assessment: Assessment) -> Line:
     file = assessment.file
     given = file.document
     document = "" if given is None or not given.id else given.id
@@ -83,24 +82,21 @@ def _head(assessment: Assessment) -> Line:
         kind = "net of legs"
     depth = file.environment.depth
     water = "" if depth is None else f"{say('depth_rating', depth)} of water"
-    return _apart(assessment.name, ", ".join(filter(None, (document, kind, water))))
+    return _at_both_ends(assessment.name, ", ".join(filter(None, (document, kind, water))))
 
 
-def _verdict(assessment: Assessment) -> Line:
-    """Format the verdict and the number of open items."""
+def _verdict_line(assessment: Assessment) -> Line:
     verdict = assessment.verdict.words.upper() + ", DRAFT" * assessment.draft
     counts = counts_text(open_groups(assessment)) or "no open items"
-    return (Span(_apart(verdict, counts), STATES[assessment.verdict]),)
+    return (Span(_at_both_ends(verdict, counts), STATES[assessment.verdict]),)
 
 
-def _apart(left: str, right: str) -> str:
-    """Place two texts at the two ends of a line, or on two lines if they do not fit."""
+def _at_both_ends(left: str, right: str) -> str:
     gap = _WIDTH - len(left) - len(right)
     return f"{left}{' ' * gap}{right}" if gap > 1 else f"{left}\n{right}"
 
 
 def _cases(assessment: Assessment) -> Iterator[blocks.Block]:
-    """Yield the table of load cases; for a net, values are maxima over the legs."""
     every = load_cases(assessment)
     cases, note = shown_cases(every)
     fallen = [one for one in cases if one.failure is not None]
@@ -121,7 +117,7 @@ def _cases(assessment: Assessment) -> Iterator[blocks.Block]:
 
 
 def _case_text(case: LoadCase, cases: Sequence[LoadCase]) -> str:
-    """Describe a load case briefly; later cases of the same environment do not repeat its name."""
+    """Describe a load case briefly; later cases of an environment do not repeat its name."""
     if case.situation in (STILL, STILL_LOW):
         return case.situation
     own = brief = case.environment
@@ -135,8 +131,7 @@ def _case_text(case: LoadCase, cases: Sequence[LoadCase]) -> str:
 
 
 def _checks(assessment: Assessment) -> Iterator[blocks.Block]:
-    """Yield the table of failures and largest utilisations, with a note on the other checks."""
-    rows, rest = _rows([*assessment.every_finding()])
+    rows, rest = _listed_and_other([*assessment.every_finding()])
     if rows:
         yield blocks.table_of(
             "",
@@ -145,19 +140,15 @@ def _checks(assessment: Assessment) -> Iterator[blocks.Block]:
             words("check", _title, 0.0),
             number("use %", lambda one: percent_text(one.utilisation)),
             words(f"{'100':>12}", _bar, 0.0),
-            number("found", _found),
+            number("found", _value_without_unit),
             words("limit", limit_text, 0.0),
             words("case, where", _where),
-            note=_below(rows, rest),
+            note=_checks_note(rows, rest),
             dense=True,
         )
 
 
-def _below(rows: Sequence[Finding], rest: Sequence[Finding]) -> str:
-    """Return the note below the table of checks.
-
-    It gives the largest utilisation of the checks that are not listed, and explains the case codes.
-    """
+def _checks_note(rows: Sequence[Finding], rest: Sequence[Finding]) -> str:
     most = max((one.utilisation or 0.0 for one in rest), default=None)
     others = [f"all other checks: {percent_text(most)} % or less"] if rest else []
     shown = {one.case[-1] for one in rows if one.case}
@@ -172,8 +163,7 @@ def _title(finding: Finding) -> str:
     return RULES[finding.rule].title.lower().replace(" during ", ", ")
 
 
-def _rows(every: Sequence[Finding]) -> tuple[list[Finding], list[Finding]]:
-    """Select the findings for the table of checks, and the governing findings of other rules."""
+def _listed_and_other(every: Sequence[Finding]) -> tuple[list[Finding], list[Finding]]:
     failed = governing_of_each_rule(one for one in every if one.state is State.FAIL)
     used = [one for one in governing_rows(every) if one not in failed]
     most = [one for one in used if (one.utilisation or 0.0) >= _HALF or _is_open(one)]
@@ -199,20 +189,18 @@ def _bar(finding: Finding) -> Cell | None:
     return None if used is None else Cell(bar=min(used, 9.99), state=finding.state)
 
 
-def _found(finding: Finding) -> str:
-    """Format the value of a finding without its unit, which is printed with the limit."""
+def _value_without_unit(finding: Finding) -> str:
     quantity = QUANTITIES.get(RULES[finding.rule].quantity)
     if finding.value is None or quantity is None:
         return ""
-    return quantity.number_and_unit(finding.value, finding.limit)[0]
+    return quantity.number_and_unit(finding.value, finding.limit)[0]  # the limit has the unit
 
 
 def _where(finding: Finding) -> str:
     return f"{finding.case or '':2} {finding.component or 'whole line'}"
 
 
-def _in_short(item: OpenItem) -> OpenItem:
-    """Remove long passages in brackets from an open item."""
+def _shortened_item(item: OpenItem) -> OpenItem:
     text = without_asides(item.text.replace("\u00a0", " "))
     return replace(item, head=item.head.replace("\u00a0", " "), text=text)
 
@@ -233,8 +221,7 @@ def _shown_items(items: Sequence[OpenItem], most: int | None, room: int) -> bloc
     return blocks.OpenItems("Open items", tuple(kept), "\n".join(f"   {one}" for one in notes))
 
 
-def _height(block: blocks.Block) -> int:
-    """Estimate the number of terminal lines of a block, including the blank line before it."""
+def _estimated_lines(block: blocks.Block) -> int:
     if isinstance(block, blocks.Table):
         heads = max(len(column.heading.split("\n")) + bool(column.unit) for column in block.columns)
         columns = zip(*block.rows, strict=True)
@@ -259,8 +246,7 @@ def beyond_text(assessments: Sequence[Assessment]) -> tuple[str, ...]:
     return (f"Not covered: {', '.join(beyond)}.",)
 
 
-def _of_many(assessments: Sequence[Assessment]) -> Iterator[blocks.Block]:
-    """Yield the matrix of maximum utilisations, then the open items of moorings that fail."""
+def _matrix_blocks(assessments: Sequence[Assessment]) -> Iterator[blocks.Block]:
     rows = [summary_row(each) for each in assessments]
     names, kept, codes = environments_of(rows)
     failing = [each for each in assessments if each.verdict is Conclusion.FAILS]
@@ -278,7 +264,7 @@ def _of_many(assessments: Sequence[Assessment]) -> Iterator[blocks.Block]:
         "",
         rows,
         words("highest utilisation, %", lambda row: short(row.mooring, room)),
-        *(_of_environment(name, codes[name]) for name in kept),
+        *(_environment_column(name, codes[name]) for name in kept),
         number("launch", lambda row: _matrix_text(row.handling)),
         note="! fails  ~ over 100, a warning or accepted  ? unknown\n"
         + ", ".join(
@@ -295,14 +281,14 @@ def _of_many(assessments: Sequence[Assessment]) -> Iterator[blocks.Block]:
         grave = (
             one for one in open_items(each, keys=True) if one.state in (State.FAIL, State.UNKNOWN)
         )
-        items = [_in_short(one) for one in grave]
+        items = [_shortened_item(one) for one in grave]
         if left and items:
             yield blocks.OpenItems(each.name, tuple(items[:left]))
             left -= min(left, len(items))
     yield blocks.Note(beyond_text(assessments))
 
 
-def _of_environment(name: str, code: str) -> blocks.Field:
+def _environment_column(name: str, code: str) -> blocks.Field:
     return number(code, lambda row: _matrix_text(row.cells.get(name)))
 
 

@@ -27,18 +27,17 @@ def joined(findings: Iterable[Finding]) -> list[list[Finding]]:
     """Group findings of one rule that differ only in component and values.
 
     Findings that are unknown because the same value of a component is missing form their own group.
-    All failures of a rule of the anchor form one group, with or without any capacity left.
+    All failures of a rule on the anchor form one group, whether or not any capacity is left.
     """
 
     def cause(one: Finding) -> Hashable:
         same = RULES[one.rule].of_anchor and one.state is State.FAIL
-        return one.rule, one.state, one.missing or same or _wording(one)
+        return one.rule, one.state, one.missing or same or _message_without_values(one)
 
     return [*grouped_by(findings, cause).values()]
 
 
-def _wording(finding: Finding) -> str:
-    """Return the message of a finding without its component and values."""
+def _message_without_values(finding: Finding) -> str:
     text = f"{finding.message} {finding.remedy or ''}"
     if finding.component is not None:
         text = text.replace(finding.component, "")
@@ -62,7 +61,7 @@ def named(labels: Iterable[str], most: int = 3) -> str:
 
 
 def _runs(stem: str, numbers: Iterable[int]) -> Iterator[tuple[str, int]]:
-    """Yield a label such as "glass 1 to 4" for each run of consecutive numbers, and its length."""
+    """Yield a label such as "glass 1 to 4", and the length, of each run of consecutive numbers."""
     each = sorted(set(numbers))
     for _, group in groupby(enumerate(each), lambda pair: pair[1] - pair[0]):
         run = [number for _, number in group]
@@ -137,7 +136,7 @@ def inventory_table(items: Sequence[InventoryItem]) -> Table:
         )
 
     def summed(name: str) -> Field:
-        return quantity(name, lambda group: None)[0], lambda group: _sum(name, group)
+        return quantity(name, lambda group: None)[0], lambda group: _sum_cell(name, group)
 
     return table_of(
         "Inventory",
@@ -160,11 +159,7 @@ def inventory_table(items: Sequence[InventoryItem]) -> Table:
     )
 
 
-def _sum(name: str, items: Sequence[InventoryItem]) -> Cell:
-    """Format the sum of the known values of items, with the number of unknown ones.
-
-    A sum of masses with unknown values is marked as a lower bound.
-    """
+def _sum_cell(name: str, items: Sequence[InventoryItem]) -> Cell:
     if name == "cut_length":
         items = [each for each in items if each.kind in FLEXIBLE_KINDS]
     known = [value for item in items if (value := getattr(item, name)) is not None]

@@ -52,12 +52,12 @@ def to_list(catalogue: Catalogue, definitions: Mapping[str, Defined]) -> ReportP
         return (
             None
             if sheet is None
-            else _text("net_buoyancy", sheet.net_buoyancy) + _per_metre(row[1])
+            else _value_text("net_buoyancy", sheet.net_buoyancy) + _per_metre(row[1])
         )
 
     def figure(heading: str, key: str) -> Field:
         def text(row: tuple[str, Defined]) -> str | None:
-            return None if getattr(row[1], key, None) is None else _say(row[1], key)
+            return None if getattr(row[1], key, None) is None else _field_text(row[1], key)
 
         return number(heading, text)
 
@@ -79,10 +79,10 @@ def to_card(identifier: str, definition: Defined, catalogue: Catalogue | None = 
     Derived values follow the specified values. If the catalogue has several definitions of the same
     product, the card ends with a comparison that recommends the best definition.
     """
-    following = _following(datasheet(definition, catalogue), _per_metre(definition))
-    pairs = Pairs((*_figures(definition), *following))
+    following = _derived_pairs(datasheet(definition, catalogue), _per_metre(definition))
+    pairs = Pairs((*_specified_pairs(definition), *following))
     same = [] if catalogue is None else catalogue.same_thing(identifier)
-    beside = [_comparison(catalogue, same)] if catalogue is not None and len(same) > 1 else []
+    beside = [_comparison_table(catalogue, same)] if catalogue is not None and len(same) > 1 else []
     return ReportPart("", (Heading(identifier), pairs, *beside))
 
 
@@ -111,32 +111,33 @@ def _family(catalogue: Catalogue, identifier: str) -> str | None:
     return entry.family if entry else None
 
 
-def _figures(definition: Defined) -> Iterator[tuple[str, str]]:
+def _specified_pairs(definition: Defined) -> Iterator[tuple[str, str]]:
     placed = (*_FIRST, *_LAST, *_ELSEWHERE)
     every = (*type(definition).model_fields, *(definition.model_extra or ()))
     fields = [name for name in every if name not in placed]
     for name in (*_FIRST, *fields, *_LAST):
         if getattr(definition, name) is not None:
-            yield _heading(name), _say(definition, name)
+            yield _heading(name), _field_text(definition, name)
 
 
-def _following(sheet: Datasheet | None, per_metre: str) -> Iterator[tuple[str, str]]:
-    """Yield the name and the text of derived values of a component, in display units."""
+def _derived_pairs(sheet: Datasheet | None, per_metre: str) -> Iterator[tuple[str, str]]:
     if sheet is None:
         return
-    yield _heading("net_buoyancy"), _text("net_buoyancy", sheet.net_buoyancy) + per_metre
+    yield _heading("net_buoyancy"), _value_text("net_buoyancy", sheet.net_buoyancy) + per_metre
     if sheet.kn is None or sheet.cd_area is None:
         return
     for name, value in (("kn", sheet.kn), ("kt", sheet.kt)):
-        yield f"{QUANTITIES[name].symbol}", f"{_text(name, value)}{per_metre and ' per metre'}"
+        yield (
+            f"{QUANTITIES[name].symbol}",
+            f"{_value_text(name, value)}{per_metre and ' per metre'}",
+        )
     across = QUANTITIES["force"].figure(sheet.kn) + per_metre
     along = QUANTITIES["force"].figure(sheet.kt or 0.0) + per_metre
     yield "drag at 1 m/s", f"{across} across, {along} along"
     yield "Cd × area", QUANTITIES["cd_area"].figure(sheet.cd_area) + per_metre
 
 
-def _comparison(catalogue: Catalogue, same: Sequence[str]) -> blocks.Table:
-    """Tabulate the definitions of one product, with the smallest and the largest values."""
+def _comparison_table(catalogue: Catalogue, same: Sequence[str]) -> blocks.Table:
     defined = {each: catalogue.get(each) for each in same}
     sheets = {
         identifier: sheet
@@ -147,8 +148,8 @@ def _comparison(catalogue: Catalogue, same: Sequence[str]) -> blocks.Table:
         (
             identifier,
             "use this" if identifier == same[0] else "",
-            _text("net_buoyancy", sheet.net_buoyancy) + _per_metre(defined[identifier]),
-            "" if sheet.cd_area is None else _text("cd_area", sheet.cd_area),
+            _value_text("net_buoyancy", sheet.net_buoyancy) + _per_metre(defined[identifier]),
+            "" if sheet.cd_area is None else _value_text("cd_area", sheet.cd_area),
             _AUTHOR.split(defined[identifier].source or "", maxsplit=1)[0],
         )
         for identifier, sheet in sheets.items()
@@ -156,8 +157,8 @@ def _comparison(catalogue: Catalogue, same: Sequence[str]) -> blocks.Table:
     nets = [sheet.net_buoyancy for sheet in sheets.values()]
     areas = [sheet.cd_area for sheet in sheets.values() if sheet.cd_area is not None]
     for word, extreme in (("smallest", min), ("largest", max)):
-        area = _text("cd_area", extreme(areas)) if areas else ""
-        rows.append((word, "", _text("net_buoyancy", extreme(nets)), area, ""))
+        area = _value_text("cd_area", extreme(areas)) if areas else ""
+        rows.append((word, "", _value_text("net_buoyancy", extreme(nets)), area, ""))
     return table_of(
         "",
         rows,
@@ -177,19 +178,18 @@ def _heading(name: str) -> str:
     return QUANTITIES[name].heading if name in QUANTITIES else name.replace("_", " ")
 
 
-def _say(definition: Defined, name: str) -> str:
+def _field_text(definition: Defined, name: str) -> str:
     value = getattr(definition, name)
     if name == "searched":
         return ", ".join(_heading(each) for each in value) + (" (no published value found)")
     if name == "sources":
         return "\n".join(f"{_heading(each)}: {text}" for each, text in value.items())
     if isinstance(value, tuple):
-        return "\n".join(_text(name, member) for member in value)
-    return _text(name, value) + (_per_metre(definition) if name in _PER_METRE else "")
+        return "\n".join(_value_text(name, member) for member in value)
+    return _value_text(name, value) + (_per_metre(definition) if name in _PER_METRE else "")
 
 
-def _text(name: str, value: Any) -> str:
-    """Format a field in one line with its unit; nested values are in brackets."""
+def _value_text(name: str, value: Any) -> str:
     if isinstance(value, float) and name in QUANTITIES:
         return QUANTITIES[name].figure(value)
     if isinstance(value, EstimatedFigure):
@@ -197,9 +197,11 @@ def _text(name: str, value: Any) -> str:
     if isinstance(value, BaseModel):
         value = value.model_dump(exclude_none=True)
     if isinstance(value, Mapping):
-        return ", ".join(f"{_heading(key)} {_text(key, member)}" for key, member in value.items())
+        return ", ".join(
+            f"{_heading(key)} {_value_text(key, member)}" for key, member in value.items()
+        )
     if isinstance(value, tuple | list):
-        return f"({'; '.join(_text(name, member) for member in value)})"
+        return f"({'; '.join(_value_text(name, member) for member in value)})"
     return str(value)
 
 

@@ -141,11 +141,6 @@ _INDEX: dict[str, Callable[[Any], int]] = {
 
 
 def _sheet(columns: str, items: Iterable[Any]) -> tuple[Sequence[str], Rows]:
-    """Return the header and the rows of a sheet.
-
-    `columns` lists headings. If an attribute has another name than its heading, ``=`` and the name
-    follow the heading.
-    """
     named = [column.partition("=") for column in columns.split()]
     heads = [head for head, _, _ in named]
     numbered = int(named[0][1:] == ("=", ""))

@@ -50,7 +50,6 @@ def cutting_part(deck: Deck) -> ReportPart:
 
 
 def _cut_table(title: str, piece: str, deck: Deck, listed: Sequence[Cut]) -> blocks.Table:
-    """Tabulate the pieces to cut, with their marks; only wires and ropes have drum columns."""
     spooled = not listed[0].is_chain
     rows: list[Any] = []
     kinds = {one.label: one for one in deck.parts}
@@ -61,9 +60,9 @@ def _cut_table(title: str, piece: str, deck: Deck, listed: Sequence[Cut]) -> blo
         leg = deck.leg(cuts[0].item.index)
         rows += [Cell(legs[leg], strong=True)] if leg != above else []
         above = leg
-        rows.append(_cut(cuts))
+        rows.append(_cut_row(cuts))
         for _, marks in groupby(cuts[0].marks, lambda one: kinds[one.label].kind):
-            rows.append((Cell(_marked(marks, kinds), indented=True), *[""] * 7, _BOX))
+            rows.append((Cell(_mark_text(marks, kinds), indented=True), *[""] * 7, _BOX))
     unit = QUANTITIES["length"].display_unit
     return table_of(
         title,
@@ -83,8 +82,7 @@ def _cut_table(title: str, piece: str, deck: Deck, listed: Sequence[Cut]) -> blo
     )
 
 
-def _cut(cuts: Sequence[Cut]) -> tuple[Cell | str, ...]:
-    """Create the row for a group of pieces with equal cut length."""
+def _cut_row(cuts: Sequence[Cut]) -> tuple[Cell | str, ...]:
     cut, last, length = cuts[0], cuts[-1], QUANTITIES["length"]
     many = f"{len(cuts)} × " if len(cuts) > 1 else ""
     load = "" if cut.load == 0.0 else f"at {say('tension', cut.load)}"
@@ -101,8 +99,7 @@ def _cut(cuts: Sequence[Cut]) -> tuple[Cell | str, ...]:
     )  # fmt: skip
 
 
-def _marked(alike: Iterable[Mark], items: Mapping[str, DeckItem]) -> str:
-    """List the marks for equal clamps on a piece, and the items to clamp there."""
+def _mark_text(alike: Iterable[Mark], items: Mapping[str, DeckItem]) -> str:
     marks = [*alike]
     places = ", ".join(QUANTITIES["at"].format(mark.at) for mark in marks)
     marked = [items[mark.label] for mark in marks]
@@ -110,8 +107,7 @@ def _marked(alike: Iterable[Mark], items: Mapping[str, DeckItem]) -> str:
     return f"mark at {places}: {name_of_run(marked) if floats else label_of_run(marked)}"
 
 
-def _length() -> Field:
-    """Create a column of lengths, with empty cells for items without a length."""
+def _length_column() -> Field:
     shown = QUANTITIES["length"]
 
     def text(one: Any) -> str | None:
@@ -135,7 +131,7 @@ def hardware_part(deck: Deck) -> ReportPart:
         words("hardware", named, 2.4),
         words("id", "use", 0.8),
         number("in the line", "count"),
-        _length(),
+        _length_column(),
         number("spares"),
         number("to bring", "total"),
         words("packed", lambda _: _BOX, 0.0),
@@ -171,7 +167,7 @@ def shipping_part(deck: Deck) -> ReportPart:
         words("component", name, 1.6),
         words("id", "use"),
         number("pieces", "count"),
-        _length(),
+        _length_column(),
         at_least("mass in air", "dry_mass", "mass", "missing_masses"),
         at_least("volume", "volume", "volume", "missing_volumes"),
         blocks.blank("packed in", share=0.8),
@@ -211,11 +207,10 @@ def lifts_part(deck: Deck) -> ReportPart:
         "the suspended pieces float. Drag and swell are not included. Shackles, links and swivels "
         "are lifted with the adjacent pieces; the files list them in separate rows."
     )
-    return ReportPart("Lifts", (blocks.Prose(tuple(sentences)), _stages(deck), Note((note,))))
+    return ReportPart("Lifts", (blocks.Prose(tuple(sentences)), _lifts_table(deck), Note((note,))))
 
 
-def _stages(deck: Deck) -> blocks.Table:
-    """Tabulate each lift once, with the load suspended during deployment and during recovery."""
+def _lifts_table(deck: Deck) -> blocks.Table:
     joints = {one.label for one in deck.parts if one.is_joint}
     recovery = {one.label: one.hanging for one in deck.lifts.recovery}
     return table_of(

@@ -52,12 +52,12 @@ def deployment_part(deck: Deck) -> ReportPart:
         by_hand=True,
     )
     shown: tuple[Block, ...] = (
-        _station(deck, _deployed(deck)[0]),
+        _station_table(deck, _deployment_texts(deck)[0]),
         Prose((sentences,)),
-        *_releases(deck, _TESTED, boxes=True),
+        *_releases_table(deck, _TESTED, boxes=True),
         soundings,
-        _positions(deck),
-        *_over_the_side(deck),
+        _positions_table(deck),
+        *_deployment_tables(deck),
     )
     return ReportPart("Deployment log", shown, _LEAST)
 
@@ -93,7 +93,7 @@ def recovery_part(deck: Deck) -> ReportPart:
             )
         if rise.in_still_water:
             sentences.append("The ascent is computed in still water.")
-    named = zip(("deployed", "position", "water depth"), _deployed(deck), strict=True)
+    named = zip(("deployed", "position", "water depth"), _deployment_texts(deck), strict=True)
     known = tuple((name, text) for name, text in named if text)
     events = table_of(
         "At the release",
@@ -105,12 +105,12 @@ def recovery_part(deck: Deck) -> ReportPart:
         by_hand=True,
     )
     shown: tuple[Block, ...] = (
-        _station(deck, ""),
+        _station_table(deck, ""),
         *([blocks.Pairs(known)] if known else []),
         Prose(tuple(sentences)),
-        *_releases(deck, _FIRED, boxes=False),
+        *_releases_table(deck, _FIRED, boxes=False),
         events,
-        *_surfacing(deck),
+        *_surfacing_tables(deck),
     )
     return ReportPart("Recovery log", shown, _LEAST)
 
@@ -126,8 +126,7 @@ _TESTED = ("tested in\nthe laboratory", "tested\nat depth", "armed,\non deck")
 _FIRED = ("enabled\nUTC", "range", "command\nsent, UTC", "confirmed\nUTC")
 
 
-def _station(deck: Deck, day: str) -> Table:
-    """Create the station table; values missing in the file are left blank."""
+def _station_table(deck: Deck, day: str) -> Table:
     document = deck.file.document
     known = {
         "ship": document.ship if document else None,
@@ -143,7 +142,7 @@ def _station(deck: Deck, day: str) -> Table:
     return table_of("", [row], *heads, by_hand=True)
 
 
-def _deployed(deck: Deck) -> tuple[str, str, str]:
+def _deployment_texts(deck: Deck) -> tuple[str, str, str]:
     """Format date, position and water depth of the deployment; each is "" if unknown."""
     deployed = deck.file.deployed
     if deployed is None:
@@ -173,25 +172,19 @@ def _span(values: Sequence[float]) -> str:
     return " to ".join(ends)
 
 
-def _numbers(row: DeckRow, deck: Deck) -> str:
-    """Return the item numbers of a row, which are the same on all sheets."""
+def _item_numbers(row: DeckRow, deck: Deck) -> str:
     return run_of([deck.numbers[one.label] for one in (*row.items, *row.floats, *row.joints)])
 
 
-def _piece(row: DeckRow, order: Order = Order.ANCHOR_LAST) -> Cell:
-    """Format label and name of a row, and its connecting hardware.
-
-    The end of the piece at which the hardware sits is stated if clamps are listed in between.
-    """
+def _piece_cell(row: DeckRow, order: Order = Order.ANCHOR_LAST) -> Cell:
     joints = hardware_text(row.joints)
     detail = f"{row.name}; with {joints}" if joints else row.name
-    if joints and row.is_followed_by_clamps:
+    if joints and row.is_followed_by_clamps:  # the clamps are listed before the next piece
         detail += f" at the {'lower' if order is Order.ANCHOR_LAST else 'upper'} end"
     return Cell(row.label, detail, indented=row.first.on is not None, strong=True, goes_on=True)
 
 
-def _releases(deck: Deck, checks: Sequence[str], *, boxes: bool) -> list[Table]:
-    """Tabulate the releases with their codes, and with a box or writing space for each check."""
+def _releases_table(deck: Deck, checks: Sequence[str], *, boxes: bool) -> list[Table]:
     codes = {one.serial: "\n".join(one.code_lines) for one in deck.file.releases}
     rows = []
     for part in deck.parts:
@@ -215,7 +208,7 @@ def _releases(deck: Deck, checks: Sequence[str], *, boxes: bool) -> list[Table]:
     return [table] if rows else []
 
 
-def _over_the_side(deck: Deck) -> list[Table]:
+def _deployment_tables(deck: Deck) -> list[Table]:
     planned = any(one.planned_depth is not None for one in deck.deployment)
 
     def length(row: DeckRow) -> str:
@@ -230,8 +223,8 @@ def _over_the_side(deck: Deck) -> list[Table]:
 
     unit, deep = QUANTITIES["length"].display_unit, QUANTITIES["depth"].display_unit
     fields = (
-        number("no.", lambda row: _numbers(row, deck)),
-        words("piece", lambda row: _piece(row, deck.order), 3.8),
+        number("no.", lambda row: _item_numbers(row, deck)),
+        words("piece", lambda row: _piece_cell(row, deck.order), 3.8),
         words("length,\nor position", length, 1.3, unit=unit),
         *([quantity("depth", "first.depth"), number("planned", plan, deep)] if planned else []),
         words("serial\nnumber", "first.serial", 0.7),
@@ -241,12 +234,13 @@ def _over_the_side(deck: Deck) -> list[Table]:
     )
     return [
         table_of(title, printed_rows(items), *fields, by_hand=True)
-        for title, items in _titled("Order over the side", deck, deck.deployment)
+        for title, items in _titled_by_leg("Order over the side", deck, deck.deployment)
     ]
 
 
-def _titled(title: str, deck: Deck, items: Sequence[DeckItem]) -> list[tuple[str, list[DeckItem]]]:
-    """Split a list by legs, and give the list of each leg a title."""
+def _titled_by_leg(
+    title: str, deck: Deck, items: Sequence[DeckItem]
+) -> list[tuple[str, list[DeckItem]]]:
     legs = leg_titles(deck.result)
     return [
         (f"{title}: {legs[name]}" if name else title, own)
@@ -254,7 +248,7 @@ def _titled(title: str, deck: Deck, items: Sequence[DeckItem]) -> list[tuple[str
     ]
 
 
-def _positions(deck: Deck) -> Table:
+def _positions_table(deck: Deck) -> Table:
     file, plan = deck.file, deck.plan
     target = "" if file.position is None else position_text(file.position)
     start = let_go = ""
@@ -266,7 +260,7 @@ def _positions(deck: Deck) -> Table:
         ("Fall-back target", "", "", ""),
         ("First piece over", start, "", ""),
         ("Anchor release", let_go, "", ""),
-        ("Anchor, ranged", "", *_deployed(deck)[1:]),
+        ("Anchor, ranged", "", *_deployment_texts(deck)[1:]),
     )
     return table_of(
         "Positions",
@@ -280,16 +274,16 @@ def _positions(deck: Deck) -> Table:
     )
 
 
-def _surfacing(deck: Deck) -> list[Table]:
+def _surfacing_tables(deck: Deck) -> list[Table]:
     risen = {id(one.item): one for one in deck.recovery}
     listed = [one.item for one in deck.recovery if not one.item.is_joint]
 
     def expected(row: DeckRow) -> Cell:
-        return _expected([risen[id(one)] for one in (*row.items, *row.floats)])
+        return _surfacing_cell([risen[id(one)] for one in (*row.items, *row.floats)])
 
     fields = (
-        number("no.", lambda row: _numbers(row, deck)),
-        words("piece", _piece, 4.6),
+        number("no.", lambda row: _item_numbers(row, deck)),
+        words("piece", _piece_cell, 4.6),
         words("serial\nnumber", "first.deployed_serial", 0.95),
         words("surfaces\nor hangs", expected, 0.0),
         blank("seen", "UTC", 0.65),
@@ -306,16 +300,12 @@ def _surfacing(deck: Deck) -> list[Table]:
     )
     tables = [
         table_of(title, printed_rows(items), *fields, by_hand=True)
-        for title, items in _titled("Order of surfacing", deck, listed)
+        for title, items in _titled_by_leg("Order of surfacing", deck, listed)
     ]
     return [*tables[:-1], *(replace(last, note=note) for last in tables[-1:])]
 
 
-def _expected(items: Sequence[RecoveredItem]) -> Cell:
-    """Format the expected times of surfacing of the first and the last item.
-
-    Items that stay below the surface have a depth instead.
-    """
+def _surfacing_cell(items: Sequence[RecoveredItem]) -> Cell:
     sentences = []
     for one in (items[0], items[-1]):
         if one.time is not None:

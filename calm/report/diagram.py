@@ -67,8 +67,8 @@ class PageSize(StrEnum):
 class _PageColumn:
     """A column of the diagram: its parts, the texts at its two ends, and its leg.
 
-    `above` and `below` are the texts on the connections to other columns. They are None if the line
-    ends in the sea or on the seabed.
+    `above` and `below` are the texts at the connections to other columns. They are None if the line
+    ends in the water or on the seabed.
     """
 
     parts: tuple[PlacedPart, ...]
@@ -88,12 +88,6 @@ _Stacks = tuple[tuple[tuple[float, _PageColumn], ...], ...]
 
 
 class _Diagram:
-    """Layout of a mooring diagram on pages.
-
-    The columns are in reading order. Each contains one or several legs, each with a vertical
-    offset.
-    """
-
     def __init__(self, deck: Deck, page_size: PageSize) -> None:
         lines = deck.result.legs
         listed = [items for _, items in deck.by_leg(deck.parts, lambda one: one.index)]
@@ -105,7 +99,7 @@ class _Diagram:
         self.title, self.page_size, self.fields = (
             one_line(deck.file.name),
             page_size,
-            _fields(deck, page_size),
+            _title_block_rows(deck, page_size),
         )
         self.bottom = page_size.size[1] - _MARGIN - sum(map(_height, self.fields))
         headings = [(*words, QUANTITIES[name].display_unit if name else "")
@@ -122,14 +116,16 @@ class _Diagram:
             ]
             for growth in (1.0, 0.5, 0.0)
         )
-        self.columns = min(map(self._even, sets), key=len)
+        self.columns = min(map(self._evenly_distributed, sets), key=len)
         self.count = -(-len(self.columns) // page_size.columns)
 
-    def _even(self, legs: Sequence[tuple[LegResult, Sequence[PlacedPart]]]) -> _Stacks:
+    def _evenly_distributed(
+        self, legs: Sequence[tuple[LegResult, Sequence[PlacedPart]]]
+    ) -> _Stacks:
         """Distribute the parts of all legs evenly over the columns.
 
-        Parts move to the last column until it is about as long as the first. Below the last part
-        there must be room for the seabed and the legend, above the title block.
+        Parts move to the last column until it is about as long as the first. The last column must
+        leave room for the seabed and the legend above the title block.
         """
         need = _GROUND + LEADING - (-len(self.legend) // _LEGEND_COLUMNS) * _LEGEND_ROW
         lowest = self.bottom
@@ -141,7 +137,7 @@ class _Diagram:
                 for letter in ascii_uppercase
             )
             every = (one for line, leg in legs for one in _columns(line, leg, lowest, marks))
-            columns = self._stacked(every)
+            columns = self._stack_legs(every)
             if even and len(columns) > len(even):
                 return even
             first, last = (down + one.end for down, one in (columns[0][-1], columns[-1][-1]))
@@ -151,8 +147,7 @@ class _Diagram:
                     return even
             lowest -= 2 * LEADING
 
-    def _stacked(self, columns: Iterable[_PageColumn]) -> _Stacks:
-        """Stack the legs of a net above the title block, in as few columns as possible."""
+    def _stack_legs(self, columns: Iterable[_PageColumn]) -> _Stacks:
         found: list[list[tuple[float, _PageColumn]]] = []
         down = 0.0
         for one in columns:
@@ -164,8 +159,7 @@ class _Diagram:
                 found.append([(0.0, one)])
         return tuple(map(tuple, found))
 
-    def fill(self, page: Pen, number: int) -> None:
-        """Draw a page with its title, columns and title block; the last page has the legend."""
+    def draw_page(self, page: Pen, number: int) -> None:
         width = self.page_size.size[0] - 2 * _MARGIN
         page.write(_MARGIN, _MARGIN + 0.4 * _TITLE, self.title, width, size=_TITLE, bold=True)
         first = number * self.page_size.columns
@@ -190,13 +184,12 @@ class _Diagram:
         if one.below is None:
             schematic.draw_ground(page, column, left, end, TextRow("seabed", ""))
         if one.above is not None:
-            self._draw_continued(page, left, start - _CONTINUED, one.above)
+            self._draw_continuation_mark(page, left, start - _CONTINUED, one.above)
         schematic.draw_parts(page, one.parts, column, left)
         if one.below is not None:
-            self._draw_continued(page, left, end, one.below)
+            self._draw_continuation_mark(page, left, end, one.below)
 
-    def _draw_continued(self, page: Pen, left: float, top: float, words: str) -> None:
-        """Draw the mark at one end of an interrupted line, with the letter that both ends carry."""
+    def _draw_continuation_mark(self, page: Pen, left: float, top: float, words: str) -> None:
         x, text = left + self.column.line_at, left + self.column.text[0]
         page.line(x, top, x, top + _CONTINUED, stroke=INK, stroke_width=1.2, stroke_dasharray="2 2")
         page.draw(
@@ -206,7 +199,6 @@ class _Diagram:
         page.letters(text, top + _CONTINUED / 2, words, size=FONT, bold=True)
 
     def _draw_legend(self, page: Pen, column: int) -> None:
-        """Draw a legend of the symbols used, at the foot of a column."""
         left = self.page_size.left(column)
         top = self.bottom + (-len(self.legend) // _LEGEND_COLUMNS) * _LEGEND_ROW
         page.letters(left, top - LEADING - 5.0, "Symbols", size=FONT, bold=True)
@@ -223,10 +215,6 @@ class _Diagram:
             page.letters(x + 18.0, y, symbol.value, size=FONT)
 
     def _draw_title_block(self, page: Pen, sheet: str) -> None:
-        """Draw the title block, with blank fields for unknown values.
-
-        `sheet` is a text such as "2 of 5".
-        """
         step, y = (self.page_size.size[0] - 2 * _MARGIN) / _COLUMNS[self.page_size], self.bottom
         for row in self.fields:
             height = _height(row)
@@ -252,7 +240,7 @@ def diagram_pages(deck: Deck, page_size: PageSize) -> list[str]:
     diagram = _Diagram(deck, page_size)
     pages = [picture(*page_size.size, diagram.title) for _ in range(diagram.count)]
     for number, page in enumerate(pages):
-        diagram.fill(page, number)
+        diagram.draw_page(page, number)
     return [svg_text(page) for page in pages]
 
 
@@ -261,7 +249,7 @@ def diagram_svg(deck: Deck, page_size: PageSize) -> str:
     diagram, (width, height) = _Diagram(deck, page_size), page_size.size
     drawn = picture(width, height * diagram.count, diagram.title)
     for number in range(diagram.count):
-        diagram.fill(drawn.group(0.0, number * height), number)
+        diagram.draw_page(drawn.group(0.0, number * height), number)
     return svg_text(drawn)
 
 
@@ -273,10 +261,7 @@ def _columns(
 ) -> Iterator[_PageColumn]:
     """Yield the columns of a line or a leg in reading order.
 
-    Parameters
-    ----------
-    lowest : lower limit of a column [pt]
-    marks : letters for the interruptions of a line
+    `lowest` is the lower limit of a column [pt], and `marks` are the letters for interruptions.
     """
     afloat, (above, bottom) = line.type == "surface", end_descriptions(line)
     sea = _MAST - parts[0].height / 2 if afloat else _SKY + _SUBMERGED
@@ -309,10 +294,9 @@ _LONGEST = 240
 """Longest text in a field of the title block; a longer text would leave no room for the line."""
 
 
-def _fields(deck: Deck, page_size: PageSize) -> list[_Fields]:
-    """Return the rows of the title block, without the page number."""
+def _title_block_rows(deck: Deck, page_size: PageSize) -> list[_Fields]:
     environment = DEFAULT_ENVIRONMENT if deck.environment == OWN else deck.environment
-    known = {**dict(title_pairs(deck.file)), **_known(deck), "environment": environment}
+    known = {**dict(title_pairs(deck.file)), **_checked_values(deck), "environment": environment}
     columns = _COLUMNS[page_size]
     room = (page_size.size[0] - 2 * _MARGIN) / columns - 2 * _PAD
     texts = {name: short(one_line(known.get(name, "")), _LONGEST) for name in _FIELDS}
@@ -320,8 +304,7 @@ def _fields(deck: Deck, page_size: PageSize) -> list[_Fields]:
     return [tuple(fields[start : start + columns]) for start in range(0, len(fields), columns)]
 
 
-def _known(deck: Deck) -> dict[str, str]:
-    """Format the anchor weights, the minimum back-up buoyancy, and the verdict."""
+def _checked_values(deck: Deck) -> dict[str, str]:
     anchors = [one for one in deck.assessment.inventory if one.role == "anchor"]
     if not deck.result.several:
         anchors = anchors[-1:] or [deck.assessment.inventory[-1]]

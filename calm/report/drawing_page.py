@@ -22,8 +22,8 @@ _WORDS, _DEPTHS = (
 )  # width of the text of a row together with its depths, and of one depth
 _LINE_HEIGHT = 9.6
 _BOLD, _REGULAR, _WRAPPED = 0.70, 0.77, 1.08
-"""Estimated text width as a ratio to the bound of `text_width`: bold and regular type; and, for
-wrapped text, the ratio of all lines together to a single line.
+"""Estimated text width relative to the bound from `text_width`, for bold and regular type; and the
+total width of wrapped lines relative to a single line.
 """
 _SEA_ROW = 16.0
 
@@ -66,11 +66,11 @@ def _sheets(
         plan = items[0].planned_depth
         levels = (one.rows[first].upper[0] if first in one.rows else None for one in cases)
         loads = [tension[one.label] for one in items if one.on is None]
-        length = _length(items, lengths[0])
+        length = _length_or_position(items, lengths[0])
         return (
             run_of([numbers[one.label] for one in items]),
             length,
-            _buoyancy(-sum(known)) if len(known) == len(own) else "?",
+            _signed_buoyancy(-sum(known)) if len(known) == len(own) else "?",
             *(["" if plan is None else depth(plan)] if planned else ()),
             *(depth(level) for level in levels),
             load_text(max(loads)) if loads else "",
@@ -98,7 +98,7 @@ def _sheets(
     )  # fmt: skip
     heights = [height for height, _ in rows]
     breaks = [at for at, part in enumerate(parts) if part.junction]
-    groups = [*_broken(heights, breaks, room - 2 * _SEA_ROW)]
+    groups = [*_sheet_rows(heights, breaks, room - 2 * _SEA_ROW)]
     for sheet, (begin, end) in enumerate(groups):
         shown = [row for _, row in rows[begin:end]]
         if begin == leg == 0 and result.leg.top.free and not surface:
@@ -114,15 +114,13 @@ def _sheets(
         )
 
 
-def _length(items: Sequence[DeckItem], given: str) -> str:
-    """Format the cut length of a piece, or the position of a clamp."""
+def _length_or_position(items: Sequence[DeckItem], given: str) -> str:
     if items[0].on is not None:
         return place_text(items[0].places[0]).removesuffix(".00")
     return " ".join(word.removesuffix(".00") for word in given.split(" "))
 
 
-def _buoyancy(force: float) -> str:
-    """Format a net buoyancy with its sign, or without a sign if it rounds to zero."""
+def _signed_buoyancy(force: float) -> str:
     text = load_text(force)
     return f"+{text}" if force > 0.0 and text.strip("0.") else text
 
@@ -148,7 +146,7 @@ def _row(
     `width` is the width of the column with the name.
     """
     (row,) = part.rows
-    height = max(row_height(part), _LINE_HEIGHT * _lines(row, part, width) + 3.0)
+    height = max(row_height(part), _LINE_HEIGHT * _line_count(row, part, width) + 3.0)
     picture = Cell(picture=beside_row(part, height, first=first, last=last))
     if part.junction:
         return height, (
@@ -160,8 +158,7 @@ def _row(
     return height, (picture, Cell(number_), name, *map(Cell, figures))
 
 
-def _lines(row: TextRow, part: ShownPart, width: float) -> int:
-    """Return the number of lines that the text of a row takes in a given width."""
+def _line_count(row: TextRow, part: ShownPart, width: float) -> int:
     if part.junction:
         needed = _REGULAR * text_width(row.label, 8.0)
     else:
@@ -170,10 +167,13 @@ def _lines(row: TextRow, part: ShownPart, width: float) -> int:
     return 1 if needed <= width else ceil(_WRAPPED * needed / width)
 
 
-def _broken(
+def _sheet_rows(
     heights: Sequence[float], breaks: Sequence[int], room: float
 ) -> Iterator[tuple[int, int]]:
-    """Yield the first and last row of each sheet, which ends above a junction if possible."""
+    """Yield start and end (exclusive) of the rows on each sheet.
+
+    A sheet ends above a junction if there is a junction in its second half.
+    """
     begin = 0
     while begin < len(heights):
         end, used = begin, 0.0

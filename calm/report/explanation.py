@@ -1,7 +1,7 @@
 """Reports that explain a mooring.
 
-They cover the mass and ascent of a mooring, the causes of its knockdown, the change that meets a
-target, and the comparison of two designs.
+The reports cover the mass and ascent of a mooring, the causes of its knockdown, the change that
+meets a target, and the comparison of two designs.
 """
 
 from __future__ import annotations
@@ -56,11 +56,11 @@ def line_facts(result: Result) -> tuple[tuple[str, str], ...]:
         mass = f"at least {mass} (the mass of {parts} is unknown)"
     if unknown == len(masses):
         mass = "unknown, because the mass in air is not set for any part"
-    rise = (("Recovery", text),) if (text := _rise(result.leg)) else ()
+    rise = (("Recovery", text),) if (text := _ascent_text(result.leg)) else ()
     return (*rise, ("Mass", mass))
 
 
-def _rise(result: LegResult) -> str:
+def _ascent_text(result: LegResult) -> str:
     """Describe the ascent of a line; "" for a surface mooring, or without a solution."""
     with suppress(NoEquilibrium):
         rise = recovery_of(result.leg, result)
@@ -74,7 +74,7 @@ def _rise(result: LegResult) -> str:
     return ""
 
 
-class _Shown(NamedTuple):
+class _PrintedValue(NamedTuple):
     """A value to print: its name in `Figures`, and its heading, quantity, unit and scale."""
 
     name: str
@@ -84,19 +84,17 @@ class _Shown(NamedTuple):
     scale: float = 1.0
 
     def decimals(self, whole: float) -> int:
-        """Return the number of decimals that gives the total (`whole`) at least three digits."""
+        """Return enough decimals for three digits of the total `whole`, but no more than four."""
         usual = QUANTITIES[self.quantity].decimals if self.scale == 1.0 else 1
         if whole == 0.0:
             return usual
         return max(usual, min(2 - floor(log10(abs(whole * self.scale))), 4))
 
     def text(self, figures: Figures) -> str:
-        """Format the value."""
         value = getattr(figures, self.name)
         return f"{value * self.scale:z.{self.decimals(value)}f}"
 
     def growth(self, now: Figures, then: Figures | None) -> str:
-        """Format the change of the value from `now` to `then`."""
         before, after = getattr(now, self.name), then and getattr(then, self.name)
         if after is None:
             return "-"
@@ -105,7 +103,7 @@ class _Shown(NamedTuple):
 
 
 _COLUMNS = {
-    name: _Shown(name, *more)
+    name: _PrintedValue(name, *more)
     for name, *more in (
         ("knockdown", "knock-\ndown", "knockdown", "m"),
         ("excursion", "excur-\nsion", "offset", "m"),
@@ -135,15 +133,15 @@ def explanation_part(explanation: Explanation) -> ReportPart:
     failures = (f"{one.name}: {one.failure}" for one in changes if one.failure is not None)
     shown: tuple[Block, ...] = (
         *([Prose(explanation.notes)] if explanation.notes else []),
-        *([_causes(explanation, causes)] if causes is not None and len(causes) else []),
-        _changes(explanation),
+        *([_causes_table(explanation, causes)] if causes is not None and len(causes) else []),
+        _changes_table(explanation),
         *blocks.warned(failures),
         blocks.quiet(*([_SHARES] if causes is not None else []), _CHANGES),
     )
     return ReportPart(title, shown)
 
 
-def _causes(explanation: Explanation, causes: Causes) -> Table:
+def _causes_table(explanation: Explanation, causes: Causes) -> Table:
     columns = [_COLUMNS[name] for name in explanation.quantities]
     wholes = [getattr(explanation.figures, column.name) for column in columns]
     start = [explanation.without_drag[column.name] for column in columns]
@@ -163,7 +161,7 @@ def _causes(explanation: Explanation, causes: Causes) -> Table:
         sums = [sum(each) for each in zip(*(shares for _, shares in rest), strict=True)]
         lines.append((rest[0][0] if len(rest) == 1 else f"{len(rest)} others", "", sums))
 
-    def figure(at: int, column: _Shown) -> Iterator[blocks.Field]:
+    def figure(at: int, column: _PrintedValue) -> Iterator[blocks.Field]:
         digits, whole = column.decimals(wholes[at]), wholes[at]
         yield number(
             column.heading, lambda row: f"{row[2][at] * column.scale:z.{digits}f}", column.unit
@@ -178,7 +176,7 @@ def _causes(explanation: Explanation, causes: Causes) -> Table:
     return table_of("", lines, words("", 0), number("drag", 1, "N"), *fields, sums=[total])
 
 
-def _changes(explanation: Explanation) -> Table:
+def _changes_table(explanation: Explanation) -> Table:
     anchor = _ANCHOR if explanation.figures.tension is not None else ()
     columns = [_COLUMNS[name] for name in (*explanation.quantities, *anchor)]
     now = explanation.figures
@@ -219,9 +217,9 @@ def sizing_part(sizing: Sizing) -> ReportPart:
     effort = f"Solved {sizing.solves} times with the solver settings of the file."
     effort = "Solved once." if sizing.solves == 1 else effort
     lines += [*sizing.notes, (Span(effort, quiet=True),)]
-    table = _comparison(sizing, sizing.before, sizing.after)
+    table = _sizing_table(sizing, sizing.before, sizing.after)
     title = f"{sizing.change.file.name}: {sizing.target.text}"
-    return ReportPart(title, (Prose((_answer(sizing),)), table, Prose(tuple(lines))))
+    return ReportPart(title, (Prose((_sizing_sentence(sizing),)), table, Prose(tuple(lines))))
 
 
 def refusal(sizing: Sizing) -> str:
@@ -229,7 +227,7 @@ def refusal(sizing: Sizing) -> str:
     return f"{sizing.target.text} is not met. {sizing.message} {sizing.advice}"
 
 
-def _answer(sizing: Sizing) -> str:
+def _sizing_sentence(sizing: Sizing) -> str:
     change, before, after = sizing.change, sizing.before, sizing.after
     assert after is not None
     if after.value == before.value:
@@ -246,7 +244,7 @@ def _answer(sizing: Sizing) -> str:
     )
 
 
-def _comparison(sizing: Sizing, before: Trial, after: Trial) -> Table:
+def _sizing_table(sizing: Sizing, before: Trial, after: Trial) -> Table:
     target, both = sizing.target, (before, after)
     titles = {field: title for field, _, title in _ROWS}
     name = titles.get(target.quantity, f"{target.quantity} of the top")
@@ -258,7 +256,7 @@ def _comparison(sizing: Sizing, before: Trial, after: Trial) -> Table:
     afloat = after.result is not None and after.result.type == "surface"
     net = after.result is not None and after.result.several
     for field, quantity, title in _ROWS:
-        head = title.replace("the top", _place_name(after)) if net else title
+        head = title.replace("the top", _shown_part(after)) if net else title
         if head == name or (field == "used_buoyancy" and not afloat):
             continue
         shown = QUANTITIES[quantity]
@@ -268,8 +266,7 @@ def _comparison(sizing: Sizing, before: Trial, after: Trial) -> Table:
     return table_of("", rows, *fields)
 
 
-def _place_name(trial: Trial) -> str:
-    """Return the label of the part whose depth and excursion are shown."""
+def _shown_part(trial: Trial) -> str:
     assert trial.result is not None
     parts = parts_of(trial.result.file.pieces)
     return next((part.label for part in parts if part.place == trial.place), parts[0].label)
@@ -277,10 +274,10 @@ def _place_name(trial: Trial) -> str:
 
 def comparison_part(comparison: Comparison) -> ReportPart:
     """Report the differences between two designs, followed by the values of both, side by side."""
-    return ReportPart(" → ".join(comparison.names), tuple(_blocks(comparison)))
+    return ReportPart(" → ".join(comparison.names), tuple(_comparison_blocks(comparison)))
 
 
-def _blocks(comparison: Comparison) -> Iterator[Block]:
+def _comparison_blocks(comparison: Comparison) -> Iterator[Block]:
     found, (before, after) = comparison.differences, comparison.names
     if found.any:
         changes = [("changed", each) for each in found.changed]
@@ -294,19 +291,18 @@ def _blocks(comparison: Comparison) -> Iterator[Block]:
         yield Prose(("The designs are identical.",))
     yield from blocks.warned(comparison.notes, State.FAIL)
     whole = [one for one in comparison.figures if not one.of_a_part and one.states is None]
-    yield _figures("Results", comparison.names, whole, all_rows=True)
+    yield _values_table("Results", comparison.names, whole, all_rows=True)
     parts = [one for one in comparison.figures if one.of_a_part]
-    yield _figures("Pieces and instruments", comparison.names, parts)
+    yield _values_table("Pieces and instruments", comparison.names, parts)
     margins = [one for one in comparison.figures if one.states is not None]
     if margins:
-        yield _figures("Governing checks", comparison.names, margins, all_rows=True)
+        yield _values_table("Governing checks", comparison.names, margins, all_rows=True)
 
 
-def _figures(
+def _values_table(
     title: str, names: tuple[str, str], figures: Sequence[Compared], *, all_rows: bool = False
 ) -> Table:
-    """Tabulate the values of two designs side by side; a note counts the unchanged rows."""
-    rows = [_figure(one) for one in figures]
+    rows = [_values_row(one) for one in figures]
     shown = [row for row in rows if all_rows or row[2].text != row[3].text]
     same = len(rows) - len(shown)
     return table_of(
@@ -321,11 +317,11 @@ def _figures(
     )
 
 
-def _figure(one: Compared) -> tuple[str, str, Cell, Cell, str]:
+def _values_row(one: Compared) -> tuple[str, str, Cell, Cell, str]:
     quantity, states = QUANTITIES.get(one.quantity), one.states or (None, None)
     before, after = (
         Cell(
-            _text(value, quantity, state),
+            _value_text(value, quantity, state),
             state=state,
             mark=state.sign if state and value is not None else "",
         )
@@ -340,12 +336,10 @@ def _figure(one: Compared) -> tuple[str, str, Cell, Cell, str]:
     return one.title, quantity.display_unit if quantity else "", before, after, change
 
 
-def _text(value: float | str | None, quantity: Quantity | None, state: State | None) -> str:
-    """Format a value; an unknown value is replaced by the state of its rule, or a dash. An infinite
-    utilisation means that no capacity is left.
-    """
+def _value_text(value: float | str | None, quantity: Quantity | None, state: State | None) -> str:
     if isinstance(value, str):
         return value
     if value is None or quantity is None:
         return "-" if state is None else state.value
+    # an infinite utilisation means that no capacity is left
     return "none left" if value == inf else quantity.format(value)

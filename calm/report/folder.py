@@ -1,8 +1,7 @@
 """Files and folders of reports.
 
-They are checked before any computation, and written completely or not at all.
-
-PDF files are typeset by typst.
+Paths are checked before any computation. Reports are written completely or not at all. PDF files
+are typeset by typst.
 """
 
 import contextlib
@@ -79,7 +78,7 @@ def write_report(folder: Path, files: Mapping[str, bytes]) -> None:
                     os.replace(target, kept[name])
                 os.replace(parts[name], target)
         except BaseException:
-            _restore(folder, parts, kept)
+            _restore_previous(folder, parts, kept)
             raise
     except OSError as error:
         raise UsageError(f"cannot write {target}: {error.strerror}") from None
@@ -98,10 +97,9 @@ def write_pages(folder: Path, name: str, report: Report) -> None:
     write_report(folder, files)
 
 
-def _restore(folder: Path, parts: Mapping[str, Path], kept: Mapping[str, Path]) -> None:
-    """Remove the new files that are already in place, and restore the old ones."""
+def _restore_previous(folder: Path, parts: Mapping[str, Path], kept: Mapping[str, Path]) -> None:
     for name, part in parts.items():
-        if not part.exists():
+        if not part.exists():  # already renamed
             (folder / name).unlink(missing_ok=True)
         if os.path.lexists(kept[name]):
             os.replace(kept[name], folder / name)
@@ -141,8 +139,8 @@ def write_file(path: Path, content: bytes) -> None:
 def printed(report: Report, page_size: str = "a4", leaves: Sequence[str] | None = None) -> bytes:
     """Typeset a report as PDF; the texts are passed to the template as data, never as markup.
 
-    Equal reports give equal bytes, because the fonts come from the package and the only date is
-    that of SOURCE_DATE_EPOCH. Characters that are not in the fonts appear as �.
+    Equal reports give equal bytes, because the fonts come from the package and the only date comes
+    from SOURCE_DATE_EPOCH. Characters that are not in the fonts appear as �.
 
     Parameters
     ----------
@@ -170,9 +168,10 @@ def pdf_leaf(part: Report | Section) -> str:
 
 
 def _members(part: Any) -> dict[str, Any] | str:
-    """Convert an object of a report to a dictionary with its kind, for the PDF template.
+    """Convert an object of a report to data for the PDF template.
 
-    A section is reduced to its printed members, and a cell without further attributes to its text.
+    A section becomes its printed members, a cell without further attributes its text, and any other
+    object a dictionary with its kind.
     """
     if isinstance(part, Cell):
         text, *more = vars(part).values()

@@ -1,4 +1,4 @@
-"""Report on gridded records: correlation scales, sections over time, and a description."""
+"""Report on gridded records: scales, sections over time, and text for a methods section."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -34,7 +34,7 @@ def grid_report(output: Path, record: GriddedRecord) -> Report:
         for name, field in fields.items():
             ends = ("_SD", "_QC") if names[name].isupper() else ("_sd", "_qc")
             columns = [np.asarray(result[names[name] + end].values) for end in ("", *ends)]
-            figures.append(_section(name, field, levels, *columns))
+            figures.append(_section_figure(name, field, levels, *columns))
     time = next(iter(fields.values())).samples.time
     return report_of(
         title,
@@ -75,9 +75,9 @@ def scales_table(fields: Mapping[str, GriddedQuantity]) -> Table:
         "",
         fields.items(),
         blocks.words("quantity", 0),
-        number("instruments", lambda one: _used(one[1])),
+        number("instruments", lambda one: _instrument_count(one[1])),
         number("depth scale", lambda one: f"{one[1].scales.depth:.3g}", "m"),
-        number("time scale", lambda one: _hours(one[1]), "h"),
+        number("time scale", lambda one: _time_scale_text(one[1]), "h"),
         number("rest", lambda one: f"{100.0 * one[1].scales.share:.2g}", "%"),
         number("widened", lambda one: f"{one[1].beyond:.2f}"),
         note="Correlation falls to 0.48 over one depth scale and to 0.37 over one time scale; "
@@ -94,8 +94,8 @@ def methods_text(fields: Mapping[str, GriddedQuantity], levels: Floats) -> tuple
         "Gaussian process in depth and time, which describes the deviations from the mean profile "
         f"of the record (CALM {__version__}).",
         *(
-            f"{name}: {_used(field)} instruments; correlation scales of "
-            f"{field.scales.depth:.3g} m in depth and {_hours(field)} h in time; "
+            f"{name}: {_instrument_count(field)} instruments; correlation scales of "
+            f"{field.scales.depth:.3g} m in depth and {_time_scale_text(field)} h in time; "
             f"{100.0 * field.scales.share:.2g} % of the variance was treated as uncorrelated."
             for name, field in fields.items()
         ),
@@ -105,18 +105,17 @@ def methods_text(fields: Mapping[str, GriddedQuantity], levels: Floats) -> tuple
     )
 
 
-def _used(field: GriddedQuantity) -> int:
+def _instrument_count(field: GriddedQuantity) -> int:
     return int(np.isfinite(field.samples.value).any(axis=0).sum())
 
 
-def _hours(field: GriddedQuantity) -> str:
+def _time_scale_text(field: GriddedQuantity) -> str:
     return f"{field.scales.time / 3600.0:.3g}" if field.in_time else "-"
 
 
-def _section(
+def _section_figure(
     name: str, field: GriddedQuantity, levels: Any, value: Any, deviation: Any, flag: Any
 ) -> Figure:
-    """Draw a section of depth over time, and the standard deviation below it."""
     drawing = empty_figure(_WIDTH, 2 * _HEIGHT)
     drawing.subplots_adjust(0.08, 0.07, 0.98, 0.96, hspace=0.25)
     upper, lower = drawing.subplots(2, 1, sharex=True)

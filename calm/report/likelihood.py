@@ -21,7 +21,7 @@ def likelihood_tables(named: Iterable[tuple[str, Sequence[Finding]]]) -> Iterato
 
     No table is yielded if no design has any probability.
     """
-    designs = [(_likeliest(findings), name) for name, findings in named]
+    designs = [(_likeliest_of_each_rule(findings), name) for name, findings in named]
     designs.sort(key=lambda one: -(one[0][0].probability or 0.0) if one[0] else inf)
     if not any(found for found, _ in designs):
         return
@@ -39,7 +39,7 @@ def likelihood_tables(named: Iterable[tuple[str, Sequence[Finding]]]) -> Iterato
     fields = [
         words("component", lambda one: one.component or "whole line"),
         words("limit", limit_text),
-        words("where", _place),
+        words("where", _where_text),
         number("exceeded in", share, "%"),
     ]
     yield blocks.table_of(
@@ -52,14 +52,13 @@ def likelihood_tables(named: Iterable[tuple[str, Sequence[Finding]]]) -> Iterato
     )
 
 
-def _place(finding: Finding) -> str:
+def _where_text(finding: Finding) -> str:
     changed = "" if finding.situation == AS_GIVEN else f", {finding.situation}"
     environment = "default" if finding.environment == OWN else finding.environment
     return f"{environment}{changed}"
 
 
-def _likeliest(findings: Sequence[Finding]) -> list[Finding]:
-    """Select the most probable finding of each rule, in order of decreasing probability."""
+def _likeliest_of_each_rule(findings: Sequence[Finding]) -> list[Finding]:
     counted = by_rule(one for one in findings if one.probability is not None)
     groups = (counted[name] for name in RULES if name in counted)
     found = (max(group, key=lambda one: one.probability or 0.0) for group in groups)

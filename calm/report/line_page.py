@@ -60,10 +60,6 @@ def _known(value: float | None) -> float | None:
 
 
 def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
-    """Tabulate cables, instruments, floats, releases and the anchor.
-
-    Equal floats share a row.
-    """
     groups: list[list[PieceEnvelope]] = []
     for one in loads:
         last = groups[-1][-1] if groups else None
@@ -72,7 +68,7 @@ def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
             and last.row.use == one.row.use
             and differ_by_number(last.row.label, one.row.label)
         )
-        if same and _floats(one.row):
+        if same and _has_floats(one.row):
             groups[-1].append(one)
         else:
             groups.append([one])
@@ -99,12 +95,12 @@ def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
         number("Tilt\n°", lambda group: None if group[0].row.role == "anchor"
                else QUANTITIES["tilt"].format(max(one.tilt for one in group))),
         number(f"Capa-\ncity {unit}", standing(lambda one: capacity_text(one.standing))),
-        words("Use", standing(lambda one: _bar(one.standing)), 0.45),
-        number("%", standing(lambda one: _use(one.standing))),
-        number(f"Launch {unit}", falling(lambda one: _force(one.launch_tension))),
+        words("Use", standing(lambda one: _bar_cell(one.standing)), 0.45),
+        number("%", standing(lambda one: _use_cell(one.standing))),
+        number(f"Launch {unit}", falling(lambda one: _force_text(one.launch_tension))),
         number(f"Capa-\ncity {unit}", falling(lambda one: capacity_text(one.launch))),
-        number("Use %", falling(lambda one: _use(one.launch))),
-        number(f"Rise {unit}", lambda group: _force(
+        number("Use %", falling(lambda one: _use_cell(one.launch))),
+        number(f"Rise {unit}", lambda group: _force_text(
             max((one.rise_tension or 0.0 for one in group), default=None))),
         note=(
             "Capacity is the working load, or the breaking load divided by its safety factor if "
@@ -119,8 +115,7 @@ def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
     )  # fmt: skip
 
 
-def _floats(row: ComponentRow) -> bool:
-    """Return whether a piece is a float, or carries floats."""
+def _has_floats(row: ComponentRow) -> bool:
     parts: tuple[Piece | Clamp, ...] = (row.part, *row.part.clamps)
     return any(part.component.role == "float" for part in parts)
 
@@ -131,13 +126,6 @@ _Show = Callable[[PieceEnvelope], object]
 def _most_used(
     group: Sequence[PieceEnvelope], when: Literal["standing", "launch"] = "standing"
 ) -> PieceEnvelope:
-    """Select the piece with the largest utilisation, else the largest tension.
-
-    Parameters
-    ----------
-    when : in equilibrium ("standing") or during launch ("launch")
-    """
-
     def used(one: PieceEnvelope) -> tuple[float, float]:
         finding = one.standing if when == "standing" else one.launch
         share = None if finding is None else finding.utilisation
@@ -146,18 +134,17 @@ def _most_used(
     return max(group, key=used)
 
 
-def _force(value: float | None) -> str:
+def _force_text(value: float | None) -> str:
     return "" if not value else load_text(value)
 
 
-def _bar(finding: Finding | None) -> Cell | None:
+def _bar_cell(finding: Finding | None) -> Cell | None:
     if finding is None or finding.utilisation is None:
         return None
     return Cell(bar=min(finding.utilisation, 9.99), state=finding.state)
 
 
-def _use(finding: Finding | None) -> Cell | None:
-    """Format the utilisation of a load, with a sign unless its finding passes."""
+def _use_cell(finding: Finding | None) -> Cell | None:
     if finding is None:
         return None
     signs = {State.ACCEPTED: "○", State.UNKNOWN: "?", State.FAIL: "✗", State.WARN: "▲"}
@@ -167,7 +154,6 @@ def _use(finding: Finding | None) -> Cell | None:
 
 
 def _hardware_table(loads: Sequence[PieceEnvelope]) -> Table:
-    """Tabulate hardware by type, with the most utilised piece in equilibrium and during launch."""
     groups = grouped_by(loads, lambda one: one.row.use).values()
     rows = [(_most_used(group), _most_used(group, "launch"), len(group)) for group in groups]
     unit = LOAD.display_unit
@@ -178,9 +164,9 @@ def _hardware_table(loads: Sequence[PieceEnvelope]) -> Table:
 
     launch = (
         words("Most used during launch", lambda row: named(row[1])),
-        number(f"Launch {unit}", lambda row: _force(row[1].launch_tension)),
+        number(f"Launch {unit}", lambda row: _force_text(row[1].launch_tension)),
         number(f"Capa-\ncity {unit}", lambda row: capacity_text(row[1].launch)),
-        number("Use %", lambda row: _use(row[1].launch)),
+        number("Use %", lambda row: _use_cell(row[1].launch)),
     )
     return table_of(
         "Connecting hardware",
@@ -190,7 +176,7 @@ def _hardware_table(loads: Sequence[PieceEnvelope]) -> Table:
         words("Most used, moored", lambda row: named(row[0])),
         number(f"Largest\ntension {unit}", lambda row: load_text(row[0].tension)),
         number(f"Capa-\ncity {unit}", lambda row: capacity_text(row[0].standing)),
-        number("Use %", lambda row: _use(row[0].standing)),
+        number("Use %", lambda row: _use_cell(row[0].standing)),
         *(launch if launched else ()),
         aside="one row per type, for the piece with the highest utilisation",
         ruled=False,
@@ -198,10 +184,6 @@ def _hardware_table(loads: Sequence[PieceEnvelope]) -> Table:
 
 
 def _anchor_table(signed: SignedMooring) -> Iterator[Table]:
-    """Yield the table of anchor loads, with a row for each load case.
-
-    If there are several anchors or many cases, only the most severe case of each anchor is listed.
-    """
     rows = [
         (case, result) for case in signed.standing for result in case.results if result.leg.anchored
     ]

@@ -66,7 +66,7 @@ class LoadCase:
 
     @property
     def as_given(self) -> bool:
-        """Whether the environment is that of the file, without changes."""
+        """Whether the environment is used as in the file, without changes."""
         return self.situation == AS_GIVEN
 
     @property

@@ -62,7 +62,7 @@ def missing_block(
 
     Parameters
     ----------
-    inventory : pieces and clamps; those of unknown mass in air are also listed
+    inventory : pieces and clamps, from which missing masses in air are listed
     """
     found = list(findings)
     figures = [one.missing for one in found if one.missing is not None]
@@ -74,7 +74,7 @@ def missing_block(
     if not figures:
         return f"# All values that the checks need are known.\n{optional}"
     ids = grouped_by(figures, lambda one: one.component_id)
-    lines = [f"#\n# {text}" for text in _how_to_use(ids, places)]
+    lines = [f"#\n# {text}" for text in _instructions(ids, places)]
     lines += [] if "" in places else ["components:"]
     for id, of_component in ids.items():
         labels = named(label for one in of_component for label in one.pieces)
@@ -82,15 +82,15 @@ def missing_block(
         comment = "; ".join(filter(None, (labels if labels != id else "", own)))
         lines.append(f"  {_as_key(id)}:{f'  # {comment}' if comment else ''}")
         for same in grouped_by(of_component, lambda one: one.quantity).values():
-            lines += _key(same)
+            lines += _key_lines(same)
     return _HEAD + "\n".join(lines) + f"\n{optional}"
 
 
 def _optional_values(findings: Sequence[Finding], inventory: Sequence[InventoryItem]) -> str:
     """List optional keys as comments; "" if there are none.
 
-    They are published values to replace estimates, values without which a check is not judged, and
-    masses in air.
+    Optional values are published values that replace estimates, values without which a check is not
+    judged, and masses in air.
     """
     use = {one.label: one.use for one in inventory}
     figures = [one.missing for one in findings if one.missing is not None]
@@ -129,8 +129,7 @@ def _as_key(id: str) -> str:
     return id if re.fullmatch(r"[A-Za-z][\w.-]*", id) else json.dumps(id, ensure_ascii=False)
 
 
-def _how_to_use(ids: Iterable[str], places: Places) -> list[str]:
-    """Return instructions for components defined in the file, and for components of a catalogue."""
+def _instructions(ids: Iterable[str], places: Places) -> list[str]:
     defined = {id in places for id in ids}
     below = " and ".join(places.get("", ()))
     advice = ["If the file defines a component, copy the keys below into its definition."] * (
@@ -146,8 +145,7 @@ def _how_to_use(ids: Iterable[str], places: Places) -> list[str]:
     return advice
 
 
-def _key(same: Sequence[MissingFigure]) -> list[str]:
-    """Return the lines for a key that is missing in one or several moorings."""
+def _key_lines(same: Sequence[MissingFigure]) -> list[str]:
     first = same[0]
     field = KINDS[first.kind].model_fields[first.quantity]
     meaning = (field.description or "").partition(", e.g.")[0]

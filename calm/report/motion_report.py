@@ -222,8 +222,8 @@ def sensors_table(study: MotionEstimate) -> Table:
     """
     rows = [(alone, label) for label, alone in (study.plain or study.sensors).items()]
     alone = blocks.of_first(
-        _figure("alone: bias", "bias"), _figure("rms", "rms"),
-        _figure("r", "r", "", 3), _figure("slope", "slope", "", 3),
+        _value_column("alone: bias", "bias"), _value_column("rms", "rms"),
+        _value_column("r", "r", "", 3), _value_column("slope", "slope", "", 3),
     )  # fmt: skip
     return table_of(
         "",
@@ -242,15 +242,15 @@ def held_out_table(held_out: Iterable[HeldOut]) -> Table:
         held_out,
         words("hidden sensor", "label"),
         number("times", "count"),
-        _figure("bias", "bias"),
-        _figure("rms", "rms"),
-        _figure("interpolated: rms", "linear_rms"),
-        _figure("PCHIP: rms", "pchip_rms"),
+        _value_column("bias", "bias"),
+        _value_column("rms", "rms"),
+        _value_column("interpolated: rms", "linear_rms"),
+        _value_column("PCHIP: rms", "pchip_rms"),
         number("within 95 % band", lambda one: _value_text(100.0 * one.coverage, 0), "%"),
     )
 
 
-def _figure(heading: str, name: str, unit: str = "m", decimals: int = 2) -> blocks.Field:
+def _value_column(heading: str, name: str, unit: str = "m", decimals: int = 2) -> blocks.Field:
     return number(heading, lambda one: _value_text(getattr(one, name), decimals), unit)
 
 
@@ -268,8 +268,8 @@ def motion_document(
     withheld sensors, and the key `read` describes the input files.
     """
     sensors = [
-        {"label": label, **_agreement(fit), "offset": float(offset)}
-        | ({"plain": _agreement(study.plain[label])} if label in study.plain else {})
+        {"label": label, **_agreement_document(fit), "offset": float(offset)}
+        | ({"plain": _agreement_document(study.plain[label])} if label in study.plain else {})
         for (label, fit), offset in zip(
             study.sensors.items(), study.task.common.offset, strict=True
         )
@@ -303,7 +303,7 @@ def held_out_document(held_out: Iterable[HeldOut]) -> list[dict[str, Any]]:
     ]
 
 
-def _agreement(one: Agreement) -> dict[str, Any]:
+def _agreement_document(one: Agreement) -> dict[str, Any]:
     fields = asdict(one)
     return {"n": fields.pop("count"), **fields}
 
@@ -319,11 +319,11 @@ def overview_figure(series: Sequence[SensorSeries]) -> str:
     """Draw the depths of all instruments over time, with their uncertainty bands."""
     page = Graph(_WIDTH, 260.0, "Depths of all instruments", _SIZE)
     place = (_LEFT, 6.0, _WIDTH - _LEFT - _RIGHT, 260.0 - 6.0 - _BELOW)
-    _draw_depths(page, place, series, lambda one: [(one.estimated, _line_of(one))], numbered=True)
+    _draw_depths(page, place, series, lambda one: [(one.estimated, _stroke_of(one))], numbered=True)
     return page.svg()
 
 
-def _line_of(one: SensorSeries) -> Stroke:
+def _stroke_of(one: SensorSeries) -> Stroke:
     return Stroke(_ESTIMATED, 0.7, (3.0, 1.5) if one.hidden else ())
 
 
@@ -357,7 +357,6 @@ def _draw_depths(
     *,
     numbered: bool,
 ) -> Axes:
-    """Draw depths over time, with the 95 % band of each sensor behind its curves."""
     times = [seconds(one.time) for one in series]
     bands = [(one.estimated - 1.96 * one.spread, one.estimated + 1.96 * one.spread)
              for one in series]  # fmt: skip

@@ -143,8 +143,7 @@ def groups_of(findings: Iterable[Finding], use: Mapping[str, str]) -> list[list[
     figures = [one.missing for one in every if one.missing is not None]
     lacking = {(label, one.quantity) for one in figures for label in one.pieces}
 
-    def is_covered(finding: Finding) -> bool:
-        """Return whether an item on missing values also covers this estimated pass."""
+    def is_covered(finding: Finding) -> bool:  # by an item on missing values
         own = {(finding.component, one.quantity) for one in finding.estimates}
         return finding.state is State.ESTIMATED and own <= lacking
 
@@ -167,10 +166,10 @@ def open_counts(assessment: Assessment) -> Counter[State]:
 def counts_text(groups: Iterable[Sequence[Finding]]) -> str:
     """Format the number of open items by state, such as ``1 warning, 3 accepted``."""
     counts = Counter(worst_of(group).state for group in groups)
-    return ", ".join(_counted(counts[state], state) for state in OPEN if counts[state])
+    return ", ".join(_count_of_state(counts[state], state) for state in OPEN if counts[state])
 
 
-def _counted(count: int, state: State) -> str:
+def _count_of_state(count: int, state: State) -> str:
     names = {State.FAIL: "failure", State.WARN: "warning", State.NOT_JUDGED: "not judged"}
     plural = count != 1 and state in (State.FAIL, State.WARN)
     return f"{count} {names.get(state, state.value)}{'s' * plural}"
@@ -220,36 +219,34 @@ def _item(group: Sequence[Finding], number: int, *, keys: bool) -> OpenItem:
         alike = [one for one in group if RULES[one.rule].quantity == quantity]
         worst = max(alike, key=_extreme)
     text = plain(_item_text(group, worst), keys=keys)
-    return OpenItem(worst.state, number, f"{_head(group, worst)}.", text)
+    return OpenItem(worst.state, number, f"{_item_head(group, worst)}.", text)
 
 
 def _extreme(finding: Finding) -> tuple[int, float]:
-    """Return a sort key for findings without a utilisation, by state and value."""
+    """Sort key for findings without a utilisation: state, then value."""
     value = finding.value or 0.0
     return finding.state.severity, -value if finding.sense == ">=" else abs(value)
 
 
-def _head(group: Sequence[Finding], worst: Finding) -> str:
-    """Format the heading of an open item: rule, components, and utilisation if known."""
+def _item_head(group: Sequence[Finding], worst: Finding) -> str:
     labels = list(dict.fromkeys(one.component or "" for one in group))
-    of = f", {short(named_components(_once(group)), 90)}" if labels != [""] else ""
+    of = f", {short(named_components(_one_per_component(group)), 90)}" if labels != [""] else ""
     if worst.missing is not None:
         lack = "missing" if worst.missing.class_estimate is None else "estimate too low"
         return f"{worst.missing.component_id}: {worst.missing.quantity.replace('_', ' ')} {lack}"
     if worst.state is State.ESTIMATED:
         passes = "passes" if len(labels) == 1 else "pass"
-        named = _capital(short(named_components(_once(group)), 90))
+        named = _capitalised(short(named_components(_one_per_component(group)), 90))
         return f"{named}: {passes} with an estimated value"
     use = "" if worst.utilisation is None else f": {percent_text(worst.utilisation)}\u00a0%"
     if worst.state is State.NOT_JUDGED:
         use = " is not judged"
         of = f" ({len(labels)} parts)" if len(labels) > 1 else of
     rules = dict.fromkeys(RULES[one.rule].title for one in group)
-    return f"{_capital(', '.join(rules).lower())}{of}{use}"
+    return f"{_capitalised(', '.join(rules).lower())}{of}{use}"
 
 
 def _item_text(group: Sequence[Finding], worst: Finding) -> str:
-    """Describe an open item by value and limit, and by the remedy or the reason for acceptance."""
     found, limit = figure_text(worst), figure_text(worst, "limit")
     several = len({one.component for one in group}) > 1
     case = f"case {worst.case}" if worst.case else ""
@@ -291,12 +288,11 @@ def advice(finding: Finding) -> str:
     return plain(finding.remedy or finding.message)
 
 
-def _once(group: Iterable[Finding]) -> list[Finding]:
-    """Keep only the last finding of each component."""
+def _one_per_component(group: Iterable[Finding]) -> list[Finding]:
     return list({one.component: one for one in group}.values())
 
 
-def _capital(text: str) -> str:
+def _capitalised(text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
@@ -326,15 +322,15 @@ def verdict_sentence(assessment: Assessment) -> str:
         for state in OPEN
     }  # fmt: skip
     parts = [
-        f"{_many(counts[State.FAIL], 'failure')} ({rules[State.FAIL]})"
+        f"{_in_words(counts[State.FAIL], 'failure')} ({rules[State.FAIL]})"
         * (counts[State.FAIL] > 0),
-        f"{_many(counts[State.UNKNOWN], 'unknown')} ({rules[State.UNKNOWN]})"
+        f"{_in_words(counts[State.UNKNOWN], 'unknown')} ({rules[State.UNKNOWN]})"
         * (counts[State.UNKNOWN] > 0),
-        f"{_many(counts[State.WARN], 'warning')} ({rules[State.WARN]})"
+        f"{_in_words(counts[State.WARN], 'warning')} ({rules[State.WARN]})"
         * (counts[State.WARN] > 0),
-        f"{_many(counts[State.ACCEPTED], 'accepted exception')}" * (counts[State.ACCEPTED] > 0),
-        f"{_many(counts[State.ESTIMATED], 'estimated value')}" * (counts[State.ESTIMATED] > 0),
-        f"{_many(counts[State.NOT_JUDGED], 'check')} not judged"
+        f"{_in_words(counts[State.ACCEPTED], 'accepted exception')}" * (counts[State.ACCEPTED] > 0),
+        f"{_in_words(counts[State.ESTIMATED], 'estimated value')}" * (counts[State.ESTIMATED] > 0),
+        f"{_in_words(counts[State.NOT_JUDGED], 'check')} not judged"
         * (counts[State.NOT_JUDGED] > 0),
     ]  # fmt: skip
     failing = {one.rule for group in groups for one in group if one.state is State.FAIL}
@@ -354,11 +350,11 @@ def verdict_sentence(assessment: Assessment) -> str:
     return " ".join(filter(None, sentences))
 
 
-def _many(count: int, word: str) -> str:
+def _in_words(count: int, word: str) -> str:
     number = _NUMBERS[count] if count < len(_NUMBERS) else str(count)
     return f"{number} {word}{'s' * (count != 1)}"
 
 
 def verdict_words(conclusion: Conclusion) -> str:
     """Return the short verdict that is printed above `verdict_sentence`."""
-    return _capital(conclusion.words)
+    return _capitalised(conclusion.words)

@@ -108,7 +108,7 @@ class SignedMooring:
         return f"DRAFT, {conclusion.words}" if draft(self.assessment) else verdict_words(conclusion)
 
     def running(self) -> Running:
-        """Running header and footer of every page."""
+        """Return the running header and footer of all pages."""
         given = self.assessment.file.document
         date = (given.date if given else None) or provenance.date() or ""
         own = [given.institution if given else None, f"CALM {__version__}"]
@@ -157,13 +157,12 @@ def verdict_box(signed: SignedMooring) -> Prose:
 
 
 @dataclass(frozen=True)
-class _Figure:
+class _CaseColumn:
     """Column of the table of load cases.
 
     Attributes
     ----------
     of : function that returns the value in a load case, or the value and its component
-    text : function that formats the value
     least : whether the smallest value governs
     """
 
@@ -174,13 +173,10 @@ class _Figure:
     short: str | None = None
 
     def value(self, case: LoadCase) -> tuple[float, str] | None:
-        """Return the value in a load case and the component concerned, which may be ""."""
         found = self.of(case) if case.results else None
         return found if found is None or isinstance(found, tuple) else (found, "")
 
     def field(self, lead: float) -> blocks.Field:
-        """Create the column for `table_of`, with the governing value `lead` in bold."""
-
         def show(case: LoadCase) -> Cell:
             found = self.value(case)
             if found is None:
@@ -194,25 +190,29 @@ def _whole(name: str) -> Quantity:
     return QUANTITIES[name]
 
 
-def _figures() -> tuple[_Figure, ...]:
+def _all_case_columns() -> tuple[_CaseColumn, ...]:
     depth, metres = QUANTITIES["depth"].format, _whole("depth_rating").format
     unit = QUANTITIES["depth"].display_unit
     return (
-        _Figure(f"Top depth\n{unit}", lambda one: one.depth, metres, short=f"top\n{unit}"),
-        _Figure(
+        _CaseColumn(f"Top depth\n{unit}", lambda one: one.depth, metres, short=f"top\n{unit}"),
+        _CaseColumn(
             f"Knock-\ndown {unit}", lambda one: one.knockdown, depth, short=f"knock-\ndown {unit}"
         ),
-        _Figure(f"Offset\n{unit}", lambda one: one.offset, metres, short=f"offset\n{unit}"),
-        _Figure(
+        _CaseColumn(f"Offset\n{unit}", lambda one: one.offset, metres, short=f"offset\n{unit}"),
+        _CaseColumn(
             f"Largest\ntension {LOAD.display_unit}",
             lambda one: one.tension,
             load_text,
             short=f"tension\n{LOAD.display_unit}",
         ),
-        _Figure("Safety\nfactor", lambda one: one.factor, "{:.1f}".format, True, "safety\nfactor"),
-        _Figure("Strength\nuse %", lambda one: one.strength, percent_text, short="strength\nuse %"),
-        _Figure("Anchor\nuse %", lambda one: one.anchor, percent_text, short="anchor\nuse %"),
-        _Figure(
+        _CaseColumn(
+            "Safety\nfactor", lambda one: one.factor, "{:.1f}".format, True, "safety\nfactor"
+        ),
+        _CaseColumn(
+            "Strength\nuse %", lambda one: one.strength, percent_text, short="strength\nuse %"
+        ),
+        _CaseColumn("Anchor\nuse %", lambda one: one.anchor, percent_text, short="anchor\nuse %"),
+        _CaseColumn(
             "Instrument\ntilt °", lambda one: one.tilt, QUANTITIES["tilt"].format, short="tilt\n°"
         ),
     )
@@ -220,7 +220,7 @@ def _figures() -> tuple[_Figure, ...]:
 
 def case_columns(cases: Sequence[LoadCase]) -> list[blocks.Field]:
     """Return the columns for which at least one load case has a value, without bold cells."""
-    known = [one for one in _figures() if any(one.value(case) for case in cases)]
+    known = [one for one in _all_case_columns() if any(one.value(case) for case in cases)]
     return [figure.field(nan) for figure in known]
 
 
@@ -248,10 +248,14 @@ def cases_table(signed: SignedMooring) -> Table:
         return short(case.words, 80) if case.results else f"{case.words}: no equilibrium"
 
     leads = []
-    for figure in _figures():
+    for figure in _all_case_columns():
         known = [found for one in cases if (found := figure.value(one)) is not None]
         leads.append((min if figure.least else max)(known, default=None))
-    shown = [(one, lead) for one, lead in zip(_figures(), leads, strict=True) if lead is not None]
+    shown = [
+        (one, lead)
+        for one, lead in zip(_all_case_columns(), leads, strict=True)
+        if lead is not None
+    ]
     table = table_of(
         "Load cases",
         cases,
@@ -277,7 +281,7 @@ def governing_rows(findings: Iterable[Finding]) -> list[Finding]:
     """List the governing finding of each rule, in order of decreasing utilisation.
 
     Rules without a utilisation are omitted. The rule `release-load` is also omitted if its finding
-    repeats that of `strength`.
+    repeats the finding of `strength`.
     """
     found = [one for one in governing_of_each_rule(findings) if one.utilisation is not None]
     figures = {(one.component, one.value, one.limit) for one in found if one.rule == "strength"}
@@ -358,24 +362,26 @@ def page_one(signed: SignedMooring, page_size: str = "a4") -> Iterator[Block]:
     height = TEXT_HEIGHT[page_size] - _FIXED - _ROW * rows
     height -= _TITLE_LINE * len(signed.assessment.file.description or "") // _TITLE_LETTERS
     items = OpenItems(
-        "Open items", tuple(signed.items) or (), _no_items(signed), "more: checks in full"
+        "Open items", tuple(signed.items) or (), _empty_list_text(signed), "more: checks in full"
     )
     yield title_block(signed)
     yield verdict_box(signed)
     yield cases
     if signed.standing and signed.standing[0].as_given:
-        yield Beside((_picture(signed, height),), (items,), _FIGURE_WIDTH / _WIDTH, height + 42.0)
+        yield Beside(
+            (_mooring_figure(signed, height),), (items,), _FIGURE_WIDTH / _WIDTH, height + 42.0
+        )
     else:
         yield items
     yield checks
     yield signs
 
 
-def _no_items(signed: SignedMooring) -> str:
+def _empty_list_text(signed: SignedMooring) -> str:
     return "" if signed.items else "None."
 
 
-def _picture(signed: SignedMooring, height: float) -> Figure:
+def _mooring_figure(signed: SignedMooring, height: float) -> Figure:
     first, *others = signed.standing
     drawn = [DrawnCase(one.code, one.results) for one in (first, *others)]
     svg, scale = elevation(
@@ -387,21 +393,19 @@ def _picture(signed: SignedMooring, height: float) -> Figure:
     texts += ["thin: other cases"] * any(one.code[-1] not in "s0" for one in others)
     water = first.results[0].water
     towards = f" Current towards {bearing_text(bearing_of(water.u[0], water.v[0]))} at the surface."
-    aside = f"left: to scale, 1 : {_round(scale * 72.0 / 0.0254)}; right: not to scale"
+    aside = f"left: to scale, 1 : {_scale_text(scale * 72.0 / 0.0254)}; right: not to scale"
     note = f"{', '.join(texts)}.{towards} Depths in m."
     return Figure("The mooring", svg, aside=aside, note=note)
 
 
-def _round(value: float) -> str:
-    """Round a scale to three significant digits, such as 17 000."""
+def _scale_text(value: float) -> str:
     return f"{float(f'{value:.3g}'):,.0f}".replace(",", "\u00a0")
 
 
 def _labels(signed: SignedMooring, case: LoadCase) -> list[Label]:
     """Select the labels next to the line in the drawing.
 
-    They name floats, instruments, releases and anchors and, if there is room, the cables in
-    between.
+    Floats, instruments, releases and anchors have labels and, if there is room, the cables as well.
     """
     tags: dict[str | None, str] = {}
     for (_, label), tag in item_tags(signed).items():

@@ -94,7 +94,7 @@ def result_netcdf(result: Result) -> bytes:
         sizes["clamp"] = len(clamps)
         variables.append(labels("clamp_label", "clamp", clamps.label, netcdf.CLAMPS))
         variables += _table_variables("clamp", clamps, f"clamp_label clamp_depth{where}")
-    variables += numbers(("node",), terms(of_nodes), f"shape_depth{where}", _floats(nodes))
+    variables += numbers(("node",), terms(of_nodes), f"shape_depth{where}", _as_floats(nodes))
     accuracy = {f"accuracy_{name}": getattr(result.accuracy, name) for name in ("depth", "tension")}
     of_ends = shown_in(TOWED_ENDS if result.towed else MOORED_ENDS, Output.NETCDF)
     ends = {one.name: [one.found(line) for line in lines] for one in of_ends if one.found}
@@ -108,8 +108,8 @@ def result_netcdf(result: Result) -> bytes:
         )  # fmt: skip
     else:
         ends = {name: column[0] for name, column in ends.items()}
-    variables += numbers(along, terms(of_ends), where.strip(), _floats(ends))
-    variables += numbers((), _ACCURACY, where.strip(), _floats(accuracy))
+    variables += numbers(along, terms(of_ends), where.strip(), _as_floats(ends))
+    variables += numbers((), _ACCURACY, where.strip(), _as_floats(accuracy))
     variables += netcdf.down_the_line(sizes)
     attributes = {
         **netcdf.origin(file.path, result.name, file.description, "run"),
@@ -124,16 +124,13 @@ def result_netcdf(result: Result) -> bytes:
 def _table_variables(
     dimension: str, table: Components | Clamps, beside: str
 ) -> list[netcdf.Variable]:
-    """Create the NetCDF variables of a table.
-
-    `beside` lists the names of their coordinate variables.
-    """
+    """Create the NetCDF variables of a table; `beside` names their coordinate variables."""
     columns = table.columns(Output.NETCDF)
-    figures = _floats({one.variable: getattr(table, one.name) for one in columns})
+    figures = _as_floats({one.variable: getattr(table, one.name) for one in columns})
     return numbers((dimension,), terms(columns), beside, figures)
 
 
-def _floats(columns: Mapping[str, Any]) -> dict[str, NDArray[np.float64]]:
+def _as_floats(columns: Mapping[str, Any]) -> dict[str, NDArray[np.float64]]:
     return {name: np.asarray(column, np.float64) for name, column in columns.items()}
 
 
@@ -149,15 +146,14 @@ def to_json(documents: list[dict[str, Any]]) -> str:
     """
     with_units = [{**each, "units": UNITS} if "calm" in each else each for each in documents]
     content = with_units[0] if len(with_units) == 1 else with_units
-    return json.dumps(_finite(content), indent=2, allow_nan=False) + "\n"
+    return json.dumps(_finite_or_none(content), indent=2, allow_nan=False) + "\n"
 
 
-def _finite(value: Any) -> Any:
-    """Return a document in which numbers that are not finite are None."""
+def _finite_or_none(value: Any) -> Any:
     if isinstance(value, dict):
-        return {name: _finite(member) for name, member in value.items()}
+        return {name: _finite_or_none(member) for name, member in value.items()}
     if isinstance(value, list | tuple):
-        return [_finite(member) for member in value]
+        return [_finite_or_none(member) for member in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 

@@ -87,9 +87,9 @@ def uncertainty_part(uncertain: Uncertain) -> ReportPart:
     failures = f"{uncertain.failed} of {uncertain.samples} samples have no equilibrium ({each})"
     drawn = drawn_text(uncertain.result.file.uncertainty)
     shown: tuple[Block, ...] = (
-        _ends(uncertain),
-        _pieces(uncertain),
-        *([_contributions(uncertain)] if uncertain.contributions else []),
+        _ends_table(uncertain),
+        _pieces_table(uncertain),
+        *([_contributions_table(uncertain)] if uncertain.contributions else []),
         *blocks.warned(
             [(f"{failures}; the values refer to the other samples.")] if uncertain.failed else []
         ),
@@ -119,7 +119,7 @@ def _words(name: str) -> str:
     return name.replace("_", " ")
 
 
-def _ends(uncertain: Uncertain) -> Table:
+def _ends_table(uncertain: Uncertain) -> Table:
     rows = [
         ("depth of the top", QUANTITIES["depth"], uncertain.depth_top[:, 0]),
         ("knockdown", QUANTITIES["knockdown"], uncertain.knockdown[:, 0]),
@@ -136,7 +136,7 @@ def _ends(uncertain: Uncertain) -> Table:
     )
 
 
-def _pieces(uncertain: Uncertain) -> Table:
+def _pieces_table(uncertain: Uncertain) -> Table:
     components = uncertain.result.components
     spreads = uncertain.depth_top.T, uncertain.tilt.T, uncertain.tension.T
     rows = [*zip(components.index, components.label, *spreads, strict=True)]
@@ -160,7 +160,7 @@ def _pieces(uncertain: Uncertain) -> Table:
     return table_of("", rows, words("component", 1), *spread)
 
 
-def _contributions(uncertain: Uncertain) -> Table:
+def _contributions_table(uncertain: Uncertain) -> Table:
     cause, unexplained = uncertain.contributions[0].quantity, uncertain.unexplained
     note = (
         f"{unexplained:.0%} of the spread cannot be attributed to inputs: the response is not "

@@ -44,7 +44,7 @@ def sea_response_report(analysis: WaveAnalysis) -> blocks.Report:
     title = "Tension in the highest sea: spectrum at the top, and distribution along the line"
     if several := len(analysis.states) > 1:
         title += ". Tension at the top against Hs"
-    pictures = ReportPart("Tension", (blocks.Figure(title, _drawn(analysis, several)),))
+    pictures = ReportPart("Tension", (blocks.Figure(title, _tension_drawing(analysis, several)),))
     return report_of(analysis.name, "in waves", sea_response_part(analysis), pictures)
 
 
@@ -54,18 +54,18 @@ def sea_response_part(analysis: WaveAnalysis) -> ReportPart:
     The tables list the pieces in the highest sea state. If there are several sea states, another
     table has a row for each sea state.
     """
-    states, highest = analysis.states, _highest(analysis)
+    states, highest = analysis.states, _highest_sea(analysis)
     title = f"Hs {highest.sea.significant_height:.1f} m, Tp {highest.sea.peak_period:.1f} s"
     statements, several = Prose(tuple(_statements(analysis, highest))), len(states) > 1
     shown: list[blocks.Block] = [
-        _pieces(highest, f"In the highest sea, {title}" if several else ""),
+        _pieces_table(highest, f"In the highest sea, {title}" if several else ""),
         statements,
-        _cut_offs(highest),
+        _cut_off_table(highest),
     ]
     if several:
-        shown.insert(0, _seas(states))
+        shown.insert(0, _seas_table(states))
         title = f"{len(states)} seas"
-        shown.append(_lives([each for each in analysis.fatigue if each.life]))
+        shown.append(_fatigue_table([each for each in analysis.fatigue if each.life]))
         unknown = [each.label for each in analysis.fatigue if each.unknown]
         if unknown:
             shown.append(Prose((f"Life unknown: {', '.join(unknown)}.",)))
@@ -78,11 +78,11 @@ def sea_response_part(analysis: WaveAnalysis) -> ReportPart:
     return ReportPart(f"{analysis.name}: {title}", tuple(shown))
 
 
-def _highest(analysis: WaveAnalysis) -> MooringInSea:
+def _highest_sea(analysis: WaveAnalysis) -> MooringInSea:
     return max(analysis.states, key=lambda state: state.sea.severity())
 
 
-def _lives(known: Sequence[PieceFatigue]) -> Table:
+def _fatigue_table(known: Sequence[PieceFatigue]) -> Table:
     def years(heading: str, name: str) -> blocks.Field:
         def years(one: PieceFatigue) -> str:
             count = getattr(one, name)
@@ -106,7 +106,7 @@ def _lives(known: Sequence[PieceFatigue]) -> Table:
     )
 
 
-def _pieces(state: MooringInSea, title: str) -> Table:
+def _pieces_table(state: MooringInSea, title: str) -> Table:
     tension = QUANTITIES["tension"]
 
     def pull(heading: str, name: str) -> blocks.Field:
@@ -136,12 +136,7 @@ def _percent(share: float) -> str:
     return f"{round(100.0 * share, 2):.3g}"
 
 
-def _cut_offs(state: MooringInSea) -> Table:
-    """Tabulate the sensitivity of the tension to the cut-off frequency.
-
-    For three cut-off frequencies, it gives the tension at the top, and the piece whose tension
-    changes most.
-    """
+def _cut_off_table(state: MooringInSea) -> Table:
     top, tension = state.components[0], QUANTITIES["tension"]
     cases = (("half", 0.5), ("", 1.0), ("twice", 2.0))
 
@@ -180,7 +175,7 @@ def _loads(piece: PieceInWaves, cut_off: str) -> PieceInWaves | PieceLoads:
     return getattr(piece, f"{cut_off}_cut_off") if cut_off else piece
 
 
-def _seas(states: Sequence[MooringInSea]) -> Table:
+def _seas_table(states: Sequence[MooringInSea]) -> Table:
     def deviation(
         heading: str, loads: Callable[[PieceInWaves], PieceInWaves | PieceLoads]
     ) -> blocks.Field:
@@ -221,7 +216,7 @@ def _statements(analysis: WaveAnalysis, state: MooringInSea) -> list[blocks.Line
     elif analysis.pitch_unknown is not None:
         statements.append(f"The pitch of the float is not computed: {analysis.pitch_unknown}.")
     if state.band is not None:
-        statements.append(_measured(state, state.band))
+        statements.append(_measured_sentences(state, state.band))
     one = analysis.accuracy
     good = (
         f"Standard deviations change by {one.mesh:.1%} if the number of elements is doubled, by "
@@ -231,8 +226,7 @@ def _statements(analysis: WaveAnalysis, state: MooringInSea) -> list[blocks.Line
     return [*statements, (blocks.Span(good, quiet=True),)]
 
 
-def _measured(state: MooringInSea, band: MeasuredBand) -> str:
-    """Describe the range of the tension at the top, from the scatter of measurements at sea."""
+def _measured_sentences(state: MooringInSea, band: MeasuredBand) -> str:
     low, high = state.components[0].measured_low, state.components[0].measured_high
     assert low is not None and high is not None
     height = state.sea.significant_height
@@ -258,9 +252,8 @@ _TOP, _GAP = 22.0, 52.0
 _MEAN, _STD, _MAX = (Stroke(COLOURS[0], 1.2, dashes) for dashes in ((), (1.2, 1.8), (4.0, 2.0)))
 
 
-def _drawn(analysis: WaveAnalysis, several: bool) -> str:
-    """Draw the spectrum of the tension, its values over depth and, for several seas, over Hs."""
-    state = _highest(analysis)
+def _tension_drawing(analysis: WaveAnalysis, several: bool) -> str:
+    state = _highest_sea(analysis)
     page = Graph(_WIDTH, _TOP + _TALL + 30.0, "Tension in waves", _SIZE)
     panels = 3 if several else 2
     wide = (_WIDTH - 8.0 - panels * _GAP) / panels

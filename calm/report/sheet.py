@@ -1,6 +1,6 @@
-"""Text report of a result: a table of the line, its marks, and a summary.
+"""Text report of a result: a summary, and a table of the line that marks values near limits.
 
-For a net, it consists of tables of the legs, the nodes and the loads at the ends.
+The report of a net consists of tables of the legs, the nodes and the loads at the ends.
 """
 
 import math
@@ -112,8 +112,7 @@ def accuracy_text(results: Sequence[LegResult]) -> str:
     )
 
 
-def _travel(profiler: ProfilerTravel) -> str:
-    """Describe the travel of a profiler between its stops, and the largest wire angle."""
+def _profiler_text(profiler: ProfilerTravel) -> str:
     upper, lower, worst = (
         f"{say('depth', place.depth)} ({say('tension', place.tension)}, {say('tilt', place.tilt)})"
         for place in (profiler.upper, profiler.lower, profiler.worst)
@@ -127,7 +126,6 @@ def _travel(profiler: ProfilerTravel) -> str:
 
 
 def _mooring_summary(result: LegResult) -> Iterator[tuple[str, str]]:
-    """Describe the top, the line and, if the leg is anchored, the anchor load."""
     top = result.top
     off = f"{say('offset', math.hypot(top.x, top.y))} off the anchor" * result.leg.anchored
     if result.type == "surface":
@@ -139,16 +137,15 @@ def _mooring_summary(result: LegResult) -> Iterator[tuple[str, str]]:
         text = [", ".join(filter(None, (f"{deep} deep", f"knockdown {down}", off)))]
     if top.draft is not None:
         text.append(f"draft {say('draft', top.draft)}, freeboard {say('freeboard', top.freeboard)}")
-    yield "Top", "\n".join((*text, *_strumming(result)))
+    yield "Top", "\n".join((*text, *_strumming_texts(result)))
     if result.profilers:
-        yield "Profilers", "\n".join(map(_travel, result.profilers))
+        yield "Profilers", "\n".join(map(_profiler_text, result.profilers))
     yield "Line", _line_text(result)
     if result.leg.anchored:
         yield "Anchor", _anchor_text(result)
 
 
 def _line_text(result: LegResult) -> str:
-    """Describe the line by its length, maximum tension and minimum safety factor."""
     rows = result.components
     text = f"{say('depth', sum(row.length for row in rows))} under load"
     if result.leg.anchored:
@@ -165,7 +162,6 @@ def _line_text(result: LegResult) -> str:
 
 
 def _anchor_text(result: LegResult) -> str:
-    """Describe the weight of the anchor, the required weight, and the anchor load."""
     anchor, share = result.anchor_load, ""
     if anchor.weight > 0.0:
         share = f" ({percent_used(anchor.required_weight / anchor.weight):.0f} %)"
@@ -180,7 +176,6 @@ def _anchor_text(result: LegResult) -> str:
 
 
 def _tow_summary(result: LegResult) -> Iterator[tuple[str, str]]:
-    """Yield descriptions of the loads at the ship and of the position of the towed body."""
     point, body = result.tow_point, result.body
     assert point is not None and body is not None
     at_ship, at_body = (
@@ -192,12 +187,11 @@ def _tow_summary(result: LegResult) -> Iterator[tuple[str, str]]:
         "Tow point",
         f"load {at_ship} ({vertical}, {say('horizontal', point.horizontal)} astern)",
     )
-    text = f"{_level(result, body.depth)}, layback {say('layback', body.layback)}"
-    yield "Body", "\n".join((f"{text}; tension {at_body}", *_strumming(result)))
+    text = f"{_level_text(result, body.depth)}, layback {say('layback', body.layback)}"
+    yield "Body", "\n".join((f"{text}; tension {at_body}", *_strumming_texts(result)))
 
 
-def _strumming(result: LegResult) -> tuple[str, ...]:
-    """Describe the frequency of strumming and its effect on drag, or its possible effect."""
+def _strumming_texts(result: LegResult) -> tuple[str, ...]:
     strumming, band = result.strumming, result.strumming_band
     if strumming is not None:
         together = isinstance(result.file.solver.strumming, BourgetMarichalKeys)
@@ -206,17 +200,16 @@ def _strumming(result: LegResult) -> tuple[str, ...]:
         return (f"strumming at {frequency}, Cn from {least} to {greatest}",)
     if band is not None:
         drag = f"normal drag of the cables × {band.factor:g}"
-        return (f"with strumming ({drag}): {_with(result, band)}",)
+        return (f"with strumming ({drag}): {_band_text(result, band)}",)
     return ()
 
 
-def _with(result: LegResult, band: StrummingBand) -> str:
-    """Describe the effect of increased cable drag on the top of a mooring or on a towed body."""
+def _band_text(result: LegResult, band: StrummingBand) -> str:
     if band.status != Status.CONVERGED.label:
         return band.status
     assert band.depth is not None
     if result.towed:
-        return f"body {_level(result, band.depth)}, tow point {say('tension', band.tension)}"
+        return f"body {_level_text(result, band.depth)}, tow point {say('tension', band.tension)}"
     if (
         result.type == "surface" and band.depth <= 0.0
     ):  # a float at its draft is partly out of the water
@@ -228,8 +221,7 @@ def _with(result: LegResult, band: StrummingBand) -> str:
     return top
 
 
-def _level(result: LegResult, depth: float) -> str:
-    """Format the depth of a towed body, or its height in air."""
+def _level_text(result: LegResult, depth: float) -> str:
     tow = result.file.tow
     if tow is not None and result.file.environment.fluid == "air":
         return f"{say('depth', depth + tow.height)} below the tow point"
@@ -313,7 +305,6 @@ def _cells(
     row: ComponentRow | ClampRow,
     factor: State | None = None,
 ) -> Iterator[Cell]:
-    """Yield the cells of a piece or a clamp; the safety factor has the state `factor`."""
     states = {"tilt": tilt_state(row.part.component, row.tilt), "safety_factor": factor}
     for one in figures:
         if one.quantity:
@@ -332,8 +323,8 @@ def net_part(result: Result, *, verbose: bool = True) -> ReportPart:
     count = len(result.legs)
     title = f"{result.name}: net of {count} leg{'s' * (count != 1)}, {depth} of water"
     table = table_of_line(result)
-    note = Note((table.note, *((_convergence(result),) if verbose else ())))
-    shown = (replace(table, note=""), *_ends(result), *blocks.warned(result.warnings), note)
+    note = Note((table.note, *((_convergence_text(result),) if verbose else ())))
+    shown = (replace(table, note=""), *_end_tables(result), *blocks.warned(result.warnings), note)
     return ReportPart(title, shown)
 
 
@@ -369,13 +360,12 @@ def end_text(end: EndKeys) -> str:
     return "free end" if end.anchor is None else "anchor"
 
 
-def _ends(result: Result) -> Iterator[Table | Prose]:
-    """Yield tables of the nodes, the anchors, the held ends, and the floats at the surface."""
+def _end_tables(result: Result) -> Iterator[Table | Prose]:
     ends = {"Nodes": result.nodes, "Anchors": result.anchors, "Held ends": result.held}
     for title, rows in ends.items():
         if rows:
             head = words("", "name") if title == "Nodes" else words("leg")
-            yield blocks.table_of(title, rows, head, *_fields(rows))
+            yield blocks.table_of(title, rows, head, *_known_columns(rows))
     afloat = [
         f"{leg.name}: float at the surface, {100 * leg.top.used_buoyancy:.1f} % of its buoyancy in "
         f"use, reserve buoyancy {say('reserve', leg.top.reserve)}"
@@ -386,8 +376,7 @@ def _ends(result: Result) -> Iterator[Table | Prose]:
         yield Prose(tuple(afloat))
 
 
-def _fields(rows: Sequence[Any]) -> Iterator[Field]:
-    """Yield the table columns of nodes or ends that are not empty."""
+def _known_columns(rows: Sequence[Any]) -> Iterator[Field]:
     columns = shown_in(columns_of(type(rows[0])), Output.NET_TABLE)
     for one in sorted(columns, key=lambda one: one.place):
         known = any(getattr(row, one.name) is not None for row in rows)
@@ -395,8 +384,7 @@ def _fields(rows: Sequence[Any]) -> Iterator[Field]:
             yield blocks.quantity(one.quantity, one.name)
 
 
-def _convergence(result: Result) -> str:
-    """Describe the convergence and the accuracy of the solution of a net."""
+def _convergence_text(result: Result) -> str:
     accuracy = result.accuracy
     left = max((node.imbalance for node in result.nodes), default=0.0)
     return (

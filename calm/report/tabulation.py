@@ -26,7 +26,9 @@ if TYPE_CHECKING:
     from calm.case import Design, Result
 
 FIGURES = ("depth", "layback", "tension", "angle", "body_tension", "frequency")
-"""Values in a row: depth and layback of the body, tension and angle at the ship."""
+"""Values in a row: depth and layback of the body, tension and angle at the tow point, tension at
+the body, and frequency of strumming.
+"""
 
 _HEADINGS = {"body_tension": "tension\nat body"}
 _NOTE = (
@@ -150,12 +152,12 @@ def tabulation_part(tabulation: Tabulation) -> ReportPart:
     names = [name for name in FIGURES if name != "frequency" or tabulation.strumming]
 
     def figure(name: str) -> Field:
-        shown, fine = QUANTITIES[name], _fine(name, tabulation)
+        shown, fine = QUANTITIES[name], _with_enough_decimals(name, tabulation)
         heading = _HEADINGS.get(name, shown.heading)
         return number(heading, lambda row: fine.format(row.figures[name]), shown.display_unit)
 
     def remark(row: TabulationRow) -> Cell:
-        text = _remark(tabulation, row)
+        text = _remark_text(tabulation, row)
         return Cell(text, state=State.FAIL if text else None)
 
     table = table_of(
@@ -166,25 +168,22 @@ def tabulation_part(tabulation: Tabulation) -> ReportPart:
         *map(figure, names),
         blocks.words("", remark, 0.0),
     )
-    marked = any(_remark(tabulation, row) == "!" for row in tabulation.rows)
+    marked = any(_remark_text(tabulation, row) == "!" for row in tabulation.rows)
     note = quiet(f"{_NOTE} {_WARNED}" if marked else _NOTE)
     return ReportPart(tabulation.title, (table, *warned(tabulation.warnings), note))
 
 
-def _fine(name: str, tabulation: Tabulation) -> Quantity:
-    """Return a quantity with enough decimals for `_DIGITS` digits.
-
-    The usual decimals may hide the small differences between rows, or the values of a small tow.
-    """
+def _with_enough_decimals(name: str, tabulation: Tabulation) -> Quantity:
     quantity = QUANTITIES[name]
     greatest = max((abs(row.figures[name] or 0.0) for row in tabulation.rows), default=0.0)
     if greatest == 0.0:
         return quantity
+    # the usual decimals may hide small differences between rows, or the values of a small tow
     decimals = _DIGITS - 1 - floor(log10(greatest * quantity.usual_scale))
     return replace(quantity, decimals=max(quantity.decimals, decimals))
 
 
-def _remark(tabulation: Tabulation, row: TabulationRow) -> str:
+def _remark_text(tabulation: Tabulation, row: TabulationRow) -> str:
     if isinstance(row.outcome, NoEquilibrium):
         return row.outcome.status
     return "!" if set(row.outcome.warnings) - set(tabulation.warnings) else ""
@@ -215,16 +214,16 @@ def sweep_drawing(tabulation: Tabulation) -> str:
     }
     deep = covering([0.0], columns["depth"])
     pull = covering([0.0], columns["tension"], columns["body_tension"])
-    _panel(page, 0, across, Scale(deep.high, deep.low), speeds, columns, "depth", WATER_COLOUR)
-    _panel(page, 1, across, covering(columns["layback"]), speeds, columns, "layback")
-    axes = _panel(page, 2, across, Scale(0.0, pull.high), speeds, columns, "tension")
+    _draw_panel(page, 0, across, Scale(deep.high, deep.low), speeds, columns, "depth", WATER_COLOUR)
+    _draw_panel(page, 1, across, covering(columns["layback"]), speeds, columns, "layback")
+    axes = _draw_panel(page, 2, across, Scale(0.0, pull.high), speeds, columns, "tension")
     axes.line(speeds, columns["body_tension"], _AT_BODY)
     entries = [LegendEntry("tow point", line=_CURVE), LegendEntry("body", line=_AT_BODY)]
     page.legend(entries, (_LEFTS[2], 22.0), _PANEL / 2, 12.0, columns=2)
     return page.svg()
 
 
-def _panel(
+def _draw_panel(
     page: Graph,
     number: int,
     across: Scale,

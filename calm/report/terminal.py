@@ -1,4 +1,4 @@
-"""Rendering of report blocks on a terminal: tables have no rules, colour is never essential."""
+"""Rendering of report blocks on a terminal, without table rules and legible without colour."""
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
@@ -36,13 +36,10 @@ def shown(part: ReportPart, *, plain: bool = False) -> RenderableType:
 
 
 class _Printer:
-    """Printer of blocks, with all signs or with ASCII signs only."""
-
     def __init__(self, plain: bool) -> None:
         self._sign = in_ascii if plain else str
 
     def part(self, part: ReportPart) -> Iterator[RenderableType]:
-        """Yield title and blocks, with blank lines between blocks that do not belong together."""
         if part.title:
             yield self._text(part.title, "bold")
             yield Text()
@@ -121,7 +118,6 @@ class _Printer:
         return rows
 
     def _items(self, block: blocks.OpenItems) -> Iterator[RenderableType]:
-        """Render open items with their signs; the most severe are in the colour of their state."""
         yield self._text(block.title, "bold")
         rows = table.Table.grid(padding=(0, 1, 0, 0))
         rows.add_column(no_wrap=True)
@@ -147,7 +143,7 @@ class _Printer:
 
     def _text(self, text: str, style: str = "") -> Text:
         """Create a text without markup or terminal control sequences."""
-        return _Words(self._sign(printable(text)), style=style)
+        return _BreakableText(self._sign(printable(text)), style=style)
 
 
 _BAR, _BEYOND = 10, 3  # characters of a bar up to the limit, and beyond it
@@ -164,11 +160,10 @@ def bar_text(share: float, state: State | None) -> str:
     return f"{sign * min(tenths, _BAR):{_BAR}}|{sign * max(tenths - _BAR, 0)}"
 
 
-class _Words(Text):
+class _BreakableText(Text):
     """Text whose long words may break after a hyphen, an underscore, a full stop or a slash."""
 
     def wrap(self, console: Console, width: int, **options: Any) -> Lines:
-        """Return the lines of the text, none wider than `width` cells."""
         places: list[int] = []
         for word in re.finditer(r"(?m)^ *\S+|\S+", self.plain):
             start = word.start()
@@ -207,7 +202,6 @@ class PlainTable:
             table.add_row(*cells, style=style)
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        """Render the table as plain lines; rich renders tables whose columns must wrap."""
         headings: list[list[Text]] = [
             list(column.header.split("\n")) if isinstance(column.header, Text) else []
             for column in self._table.columns
@@ -227,7 +221,7 @@ class PlainTable:
             least = max((cell_len(one.plain) for one in headings[folded]), default=0)
             simple = simple and widths[folded] >= max(least, 1)
         if not simple or excess > 0 > folded:
-            yield self._table
+            yield self._table  # rich wraps its columns
             return
         height = max(map(len, headings), default=0)
         for number in range(height):

@@ -23,13 +23,20 @@ _SMALL = 1e-3
 def verification_document(findings: Findings) -> dict[str, Any]:
     """Return the JSON object of a verification.
 
-    The keys are `calm`; `checked`, the number of checked values; `out`, the number of values out of
-    tolerance; `kinds`, the number of values of each kind; and `cases`. Values that agree by
-    construction are not counted in `checked`. `cases` has one object per value, with the keys
-    `source`, `name`, `kind`, `expected`, `got`, `difference`, `tolerance`, `unit`, `why` (the
-    reason for the tolerance), `within`, and `reason` if no value was computed.
+    Values that agree by construction are not counted in `checked`. The keys are:
+
+    - `calm`: version of CALM
+    - `checked`: number of checked values
+    - `kinds`: number of values of each kind
+    - `out`: number of values out of tolerance
+    - `cases`: list with one object per value
+
+    The keys of a case are `source`, `name`, `kind`, `expected`, `got`, `difference`, `tolerance`,
+    `unit`, `why` (the reason for the tolerance), `within`, and `reason` if no value was computed.
     """
-    cases = [_case(source, outcome) for source, outcomes in findings for outcome in outcomes]
+    cases = [
+        _case_document(source, outcome) for source, outcomes in findings for outcome in outcomes
+    ]
     kinds = by_kind(outcome.case for _, outcomes in findings for outcome in outcomes)
     return {
         "calm": __version__,
@@ -51,16 +58,18 @@ def by_kind(cases: Iterable[Case]) -> dict[Kind, int]:
 
 def verification_part(findings: Findings) -> ReportPart:
     """Build a table for each source and kind; values out of tolerance are marked ``!``."""
-    of_sources = (block for source, outcomes in findings for block in _of_source(source, outcomes))
-    return ReportPart("", (*of_sources, _sum(findings)))
+    of_sources = (
+        block for source, outcomes in findings for block in _source_blocks(source, outcomes)
+    )
+    return ReportPart("", (*of_sources, _total(findings)))
 
 
 def figures(outcome: CaseOutcome) -> tuple[str, ...]:
     """Format the outcome of a case as a row, in the order of `COLUMNS`.
 
-    The computed value and the difference are given to one decimal place more than the tolerance,
-    or to two more if the expected value has at least two more than the tolerance. Further digits
-    are rounding errors that differ between machines.
+    The computed value and the difference have one decimal place more than the tolerance, or two
+    more if the expected value has at least two more. Further digits are rounding errors that differ
+    between machines.
     """
     case = outcome.case
     expected = f"{case.expected:.12g}"
@@ -88,7 +97,7 @@ def _rounded(value: float, decimals: int) -> str:
     return text.rstrip("0").rstrip(".") if decimals else text
 
 
-def _case(source: Source, outcome: CaseOutcome) -> dict[str, Any]:
+def _case_document(source: Source, outcome: CaseOutcome) -> dict[str, Any]:
     case = outcome.case
     return {
         "source": source.title,
@@ -100,7 +109,7 @@ def _case(source: Source, outcome: CaseOutcome) -> dict[str, Any]:
     }
 
 
-def _of_source(source: Source, outcomes: Sequence[CaseOutcome]) -> Iterator[Block]:
+def _source_blocks(source: Source, outcomes: Sequence[CaseOutcome]) -> Iterator[Block]:
     def cell(outcome: CaseOutcome, name: str) -> Cell:
         text = figures(outcome)[COLUMNS.index(name)]
         if outcome.within:
@@ -114,11 +123,11 @@ def _of_source(source: Source, outcomes: Sequence[CaseOutcome]) -> Iterator[Bloc
     yield Heading(source.title)
     for kind in by_kind(outcome.case for outcome in outcomes):
         of_kind = (outcome for outcome in outcomes if outcome.case.kind is kind)
-        yield table_of(_sentence(kind), of_kind, *fields)
+        yield table_of(_capitalised(kind), of_kind, *fields)
     yield from warned(f"{one.case.name}: {one.reason}" for one in outcomes if one.reason)
 
 
-def _sentence(text: str) -> str:
+def _capitalised(text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
@@ -130,7 +139,7 @@ def _count(number: int, name: str) -> str:
     return f"{number} {name}{'s' if number != 1 else ''}"
 
 
-def _sum(findings: Findings) -> Prose:
+def _total(findings: Findings) -> Prose:
     outcomes = [outcome for _, each in findings for outcome in each]
     kinds = by_kind(outcome.case for outcome in outcomes)
     out = sum(not outcome.within for outcome in outcomes)
@@ -140,7 +149,7 @@ def _sum(findings: Findings) -> Prose:
     copied = sum(number for kind, number in kinds.items() if not kind.verifies)
     lines: list[Line] = [(Span(f"{checked}: {found}", State.FAIL if out else None),)]
     if totals:
-        lines.append(_sentence("; ".join(totals)))
+        lines.append(_capitalised("; ".join(totals)))
     if copied:
         lines.append(f"Not counted: {_count(copied, 'figure')} that are met by construction")
     return Prose(tuple(lines))

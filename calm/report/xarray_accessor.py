@@ -20,10 +20,11 @@ if TYPE_CHECKING:
 
 @xr.register_dataset_accessor("calm")  # type: ignore[no-untyped-call]
 class BatchAccessor:
-    """Access to the batch results for a part of the line, by its label in the mooring file.
+    """Access to the batch results of a part of the line, by the label of the part.
 
-    The label ``top`` means the first component, even if another part has that label. Data are
-    loaded lazily. All methods raise UsageError if the line has no part with the given label.
+    Labels are as in the mooring file. The label ``top`` means the first component, even if another
+    part has that label. Data are loaded lazily. All methods raise UsageError if the line has no
+    part with the given label.
 
     >>> dataset.calm.knockdown("adcp").max()  # doctest: +SKIP
     """
@@ -33,22 +34,24 @@ class BatchAccessor:
 
     def depth(self, label: str) -> xr.DataArray:
         """Return the depth of a clamp, or of the upper end of a component, over time [m]."""
-        return self._of(label, "depth", "depth_top")
+        return self._variable(label, "depth", "depth_top")
 
     def knockdown(self, label: str) -> xr.DataArray:
         """Return the knockdown over time [m], relative to still water."""
-        return self._of(label, "knockdown", "knockdown")
+        return self._variable(label, "knockdown", "knockdown")
 
     def tilt(self, label: str) -> xr.DataArray:
         """Return the tilt from the vertical of a component, or of the line at a clamp [degrees]."""
-        return self._of(label, "tilt", "tilt")
+        return self._variable(label, "tilt", "tilt")
 
     def tension(self, label: str) -> xr.DataArray:
         """Return the tension over time [N].
 
         For a component, the larger of the tensions at its two ends is returned.
         """
-        upper, lower = (self._of(label, "tension", f"tension_{end}") for end in ("top", "bottom"))
+        upper, lower = (
+            self._variable(label, "tension", f"tension_{end}") for end in ("top", "bottom")
+        )
         greater: xr.DataArray = upper.where(upper >= lower, lower)
         return greater
 
@@ -65,8 +68,7 @@ class BatchAccessor:
         )
         return axes
 
-    def _of(self, label: str, quantity: str, of_component: str) -> xr.DataArray:
-        """Return the variable of a component, or the corresponding variable of a clamp."""
+    def _variable(self, label: str, quantity: str, of_component: str) -> xr.DataArray:
         prefix, index = place_of(self._dataset, label)
         variable = f"{prefix}{quantity}" if prefix else of_component
         dimension = "clamp" if prefix else "component"
@@ -79,7 +81,7 @@ def _nearest(dataset: xr.Dataset, time: str | np.datetime64) -> xr.Dataset:
 
 
 def shape_picture(dataset: xr.Dataset, time: str | np.datetime64) -> LinePicture:
-    """Draw the line from the side, in the profile nearest to a given time.
+    """Create the side view of the line in the profile nearest to a given time.
 
     The picture is in the vertical plane through the anchor and the top of the line. The line is
     drawn straight between the upper ends of successive components. Raise UsageError if the profile

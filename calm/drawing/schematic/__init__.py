@@ -55,7 +55,7 @@ def schematic_svg(file: MooringFile, result: AnyResult | None = None) -> str:
     depths are those of the upright, unstretched line; for a tow, and for a line with a float at the
     surface, they are unknown.
     """
-    (drawn,) = _drawn(schematic_of(file, result), inf)
+    (drawn,) = _draw_sheets(schematic_of(file, result), inf)
     return drawn
 
 
@@ -64,10 +64,10 @@ def schematic_sheets(file: MooringFile, result: AnyResult | None = None) -> list
 
     The picture is cut only between parts, never through a part.
     """
-    return _drawn(schematic_of(file, result), _PRINTED_HEIGHT / _LEAST_SCALE)
+    return _draw_sheets(schematic_of(file, result), _PRINTED_HEIGHT / _LEAST_SCALE)
 
 
-def _drawn(shown: Schematic, most: float) -> list[str]:
+def _draw_sheets(shown: Schematic, most: float) -> list[str]:
     """Draw the sheets of a schematic; `most` is the maximum height of a sheet."""
     rows = [row for part in shown.parts for row in part.rows]
     rows += [row for row in (shown.towed_by, shown.sea, shown.seabed) if row is not None]
@@ -79,11 +79,11 @@ def _drawn(shown: Schematic, most: float) -> list[str]:
     head = _MARGIN + sum(_TITLE_LEADING if size > FONT else LEADING for _, size, _ in words)
     notes = wrapped(shown.note, room, FONT)
     ends = _MAST + _SHIP + SEABED_ROOM + LEADING * (1 + len(notes))  # above and below the line
-    groups = _evenly(measured(shown.parts, column), most - head - HEAD - ends)
+    groups = _equal_groups(measured(shown.parts, column), most - head - HEAD - ends)
     sheets = []
     for number, group in enumerate(groups):
         first, last = number == 0, number + 1 == len(groups)
-        surface, line = _placed(shown, group, head + HEAD, first=first)
+        surface, line = _place_on_sheet(shown, group, head + HEAD, first=first)
         if shown.towed_by is not None and last:
             *others, body = line
             line = (*others, replace(body, ends=(body.ends[0], body.middle)))
@@ -107,10 +107,8 @@ def _drawn(shown: Schematic, most: float) -> list[str]:
     return sheets
 
 
-def _evenly(parts: Sequence[PlacedPart], room: float) -> list[list[PlacedPart]]:
-    """Divide the parts into the smallest number of groups that fit the height `room`, with about
-    equal heights.
-    """
+def _equal_groups(parts: Sequence[PlacedPart], room: float) -> list[list[PlacedPart]]:
+    """Divide parts into as few groups of height `room` as possible, of about equal height."""
     fewest = len([*divided(parts, room)])
     each = sum(one.height for one in parts) / fewest
     while len(groups := [*divided(parts, each)]) > fewest:
@@ -118,13 +116,12 @@ def _evenly(parts: Sequence[PlacedPart], room: float) -> list[list[PlacedPart]]:
     return groups
 
 
-def _placed(
+def _place_on_sheet(
     shown: Schematic, parts: Sequence[PlacedPart], top: float, *, first: bool
 ) -> tuple[float, tuple[PlacedPart, ...]]:
-    """Place the parts of a sheet. Return the parts and the level of the sea surface, or of the hook
-    of a helicopter.
+    """Return the level of the sea surface, or of a helicopter's hook, and the parts with positions.
 
-    On every sheet but the first, this is the level of its top.
+    On every sheet but the first, this level is the top of the sheet.
     """
     if not first:
         return top, placed(parts, top)
@@ -150,10 +147,6 @@ def _draw_scene(
     first: bool,
     last: bool,
 ) -> None:
-    """Draw the water, its surface, the seabed and the towing vehicle, with their texts.
-
-    The surface and the towing vehicle are on the first sheet, the seabed is on the last.
-    """
     surface, bottom = levels
     if shown.sea is not None and first:
         draw_sea(page, column, 0.0, levels, None if shown.surface else shown.sea)
@@ -287,7 +280,6 @@ def _measured(part: ShownPart, column: LineColumn) -> PlacedPart:
 
 
 def _text_lines(row: TextRow, room: float) -> list[TextLine]:
-    """Write label and name on one line if they fit, and on separate, wrapped lines otherwise."""
     at = text_width(row.label, FONT, bold=row.strong) + 6.0
     if at + text_width(row.name, FONT) <= room and row.label.isascii():
         return [TextLine(row.label, INK, row.strong, row.name, at, row.cells)]

@@ -16,7 +16,9 @@ from calm.files.file_differences import own_labels
 from calm.quantities import QUANTITIES
 
 Cells = Callable[[Sequence[DeckItem], tuple[str, str]], tuple[str, ...]]
-"""Function that returns the values next to items from their cut and stretched lengths."""
+"""Function that returns the values next to items, given the items and, as texts, their cut and
+stretched lengths.
+"""
 
 
 def parts_of_deck(
@@ -29,7 +31,7 @@ def parts_of_deck(
     if the top of the line floats at the surface.
     """
     weights = {one.label: one.wet_weight for one in deck.assessment.inventory}
-    cells = partial(_figures, deck.numbers, weights=weights, planned=has_plans(deck))
+    cells = partial(_values, deck.numbers, weights=weights, planned=has_plans(deck))
     return parts_of(deck.file, deck.parts, listed, cells, surface=surface)
 
 
@@ -52,7 +54,7 @@ def parts_of(
     cells : function that returns the values next to a part
     surface : whether the top of the line floats at the surface
     """
-    own = _own_labels(every)
+    own = _chosen_labels(every)
     codes = {one.serial: " · ".join(one.code_lines) for one in file.releases}
     found: list[ShownPart] = []
     joints: list[DeckItem] = []
@@ -81,10 +83,8 @@ def has_plans(deck: Deck) -> bool:
     return any(one.planned_depth is not None for one in deck.parts)
 
 
-def _own_labels(parts: Sequence[DeckItem]) -> dict[int, str]:
-    """Return the labels that the user has chosen, by the identity of the part; empty for default
-    labels.
-    """
+def _chosen_labels(parts: Sequence[DeckItem]) -> dict[int, str]:
+    """Map the identity of each part to the label chosen by the user; "" for a default label."""
     labels = own_labels([one.label for one in parts])
     return {
         id(one): "" if label == one.part.use else one.label
@@ -110,7 +110,7 @@ def _piece(
         f"on {one_line(first.name)}" if row.floats else "",
         f"with {one_line(hardware_text(row.between))}" if row.between else "",
         "" if first.serial is None else f"no. {one_line(first.serial)}",
-        _codes(first, codes) if first.role == "release" else "",
+        _codes_text(first, codes) if first.role == "release" else "",
     ]
     if first.on is not None:
         places = dict.fromkeys((row.items[0].places[0], row.items[-1].places[-1]))
@@ -135,17 +135,14 @@ def _piece(
     )
 
 
-def _codes(one: DeckItem, codes: Mapping[str | None, str]) -> str:
-    """Return the codes of a release. For a pair, the codes of each release follow its serial
-    number.
-    """
+def _codes_text(one: DeckItem, codes: Mapping[str | None, str]) -> str:
     known = {serial: one_line(codes[serial]) for serial in one.serials if codes.get(serial)}
     if len(one.serials) < 2:
         return "".join(known.values())
     return " · ".join(f"{one_line(serial)}: {text}" for serial, text in known.items())
 
 
-def _figures(
+def _values(
     numbers: Mapping[str, str],
     items: Sequence[DeckItem],
     lengths: tuple[str, str],
@@ -153,11 +150,6 @@ def _figures(
     *,
     planned: bool,
 ) -> tuple[str, ...]:
-    """Return the values of a part.
-
-    These are item numbers, lengths, depth, planned depth and height of the first item, maximum
-    tension, and total net buoyancy.
-    """
     plan = items[0].planned_depth
     tension = max((one.tension for one in items if one.tension is not None), default=None)
     own = [weights.get(one.label) for one in items]

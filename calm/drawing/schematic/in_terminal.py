@@ -59,7 +59,7 @@ def schematic_text(
         _cut(schematic.title, width),
         _cut(schematic.subtitle, width),
         "",
-        *_table(schematic, width),
+        *_table_lines(schematic, width),
         "",
         *textwrap.wrap(schematic.note, width),
     ]
@@ -85,11 +85,8 @@ class TerminalSchematic:
         yield Text(text, no_wrap=True, overflow="ignore")
 
 
-def _table(schematic: Schematic, width: int) -> Iterator[str]:
-    """Yield the headings and rows. Columns are as wide as their texts, within the width of the
-    terminal.
-    """
-    drawn = list(_drawn(schematic))
+def _table_lines(schematic: Schematic, width: int) -> Iterator[str]:
+    drawn = list(_lines_of_drawing(schematic))
     rows = [row for _, row in drawn if row is not None]
     figures = []
     for number, quantity in enumerate(schematic.columns):
@@ -113,8 +110,7 @@ def _table(schematic: Schematic, width: int) -> Iterator[str]:
         yield art if drawn_row is None else line(art, drawn_row)
 
 
-def _drawn(schematic: Schematic) -> Iterator[tuple[str, TextRow | None]]:
-    """Yield the lines of the drawing from the top, each with its row of text."""
+def _lines_of_drawing(schematic: Schematic) -> Iterator[tuple[str, TextRow | None]]:
     if schematic.towed_by is not None:
         yield (_SHIP if schematic.sea else _HELICOPTER), schematic.towed_by
         if schematic.sea is not None:
@@ -125,10 +121,10 @@ def _drawn(schematic: Schematic) -> Iterator[tuple[str, TextRow | None]]:
     for number, part in enumerate(schematic.parts):
         if part.clamped:
             row = replace(part.rows[0], label=_INDENT + part.rows[0].label)
-            yield " " * _LINE_AT + _CLAMP + _art(part.sign).strip(), row
+            yield " " * _LINE_AT + _CLAMP + _symbol_art(part.sign).strip(), row
             continue
         afloat = schematic.surface and number == 0
-        art = _art(part.sign)
+        art = _symbol_art(part.sign)
         art = _at_sea(art) if afloat else art.center(2 * _LINE_AT + 1)
         yield art, part.rows[0]
         for row in part.rows[1:]:
@@ -142,10 +138,7 @@ def _drawn(schematic: Schematic) -> Iterator[tuple[str, TextRow | None]]:
         yield _SEABED * _PICTURE, schematic.seabed
 
 
-def _art(sign: Sign) -> str:
-    """Return the characters of a symbol; an ADCP has an arrow in its viewing direction in the
-    middle.
-    """
+def _symbol_art(sign: Sign) -> str:
     art = _PACK if sign.symbol in BALLS and sign.count > 1 else _SYMBOLS[sign.symbol]
     if not sign.sounding:
         return art

@@ -125,21 +125,20 @@ def one_line(text: str) -> str:
 
 
 Cells = Callable[[str, float], tuple[str, ...]]
-"""Function that returns the values of a row, given its length or position and its depth [m]."""
+"""Function that returns the values of a row, given length or position as text, and depth [m]."""
 
 
 def _parts(pieces: Sequence[Piece], cells: Cells, levels: Levels) -> Iterator[ShownPart]:
-    """Yield the parts from the top. Equal adjacent pieces that share a symbol form one part."""
     run: list[Piece] = []
     for piece in pieces:
-        if run and not _goes_with(run, piece, levels):
-            yield from _part(run, cells, levels)
+        if run and not _joins_run(run, piece, levels):
+            yield from _parts_of_run(run, cells, levels)
             run = []
         run.append(piece)
-    yield from _part(run, cells, levels)
+    yield from _parts_of_run(run, cells, levels)
 
 
-def _goes_with(run: list[Piece], piece: Piece, levels: Levels) -> bool:
+def _joins_run(run: list[Piece], piece: Piece, levels: Levels) -> bool:
     above, sign = run[-1], _sign(piece, levels)
     if piece.clamps or above.clamps or sign != _sign(above, levels):
         return False
@@ -155,12 +154,11 @@ def _sign(of: Piece | Clamp, levels: Levels) -> Sign:
 
 
 def afloat(sign: Sign) -> Sign:
-    """Return the symbol for a float at the surface: the sphere if it is a sphere, else the buoy."""
+    """Return the symbol for a float at the surface: spheres remain spheres, others become buoys."""
     return sign if sign.symbol is Symbol.SPHERE else replace(sign, symbol=Symbol.BUOY)
 
 
-def _part(run: list[Piece], cells: Cells, levels: Levels) -> Iterator[ShownPart]:
-    """Yield one part for a run of equal pieces, followed by a part for each clamp on them."""
+def _parts_of_run(run: list[Piece], cells: Cells, levels: Levels) -> Iterator[ShownPart]:
     first, sign = run[0], _sign(run[0], levels)
     cable = sign.symbol if sign.symbol in LINES else None
     start = first.index - levels.first.index

@@ -1,5 +1,4 @@
-"""Symbols of a schematic. They are chosen by the kind, role and name of a component, and drawn as
-SVG.
+"""SVG symbols of a schematic, chosen by the kind, role and name of a component.
 
 Each symbol is drawn about an origin, through which the line runs vertically.
 """
@@ -50,7 +49,11 @@ LINES = (Symbol.CHAIN, Symbol.WIRE, Symbol.ROPE)
 
 @dataclass(frozen=True)
 class Sign:
-    """A symbol, how often it is repeated, and whether it contains an ADCP that looks up or down."""
+    """A symbol and the number of its repetitions.
+
+    `sounding` is true if the symbol contains an ADCP; `up` and `down` are true if the ADCP looks in
+    these directions.
+    """
 
     symbol: Symbol
     count: int = 1
@@ -158,22 +161,19 @@ class SymbolFigure:
 
 
 def figure_of(sign: Sign) -> SymbolFigure:
-    """Return the drawing of a symbol; cables and chains have no such drawing."""
+    """Return the drawing of a symbol; cables and chains are drawn by `draw_cable` instead."""
     if sign.symbol in BALLS:
-        figure = _pack(sign)
+        figure = _pack_of_balls(sign)
     elif sign.symbol is Symbol.WHEELS:
-        figure = _wheels(min(sign.count, _MOST_WHEELS))
+        figure = _stack_of_wheels(min(sign.count, _MOST_WHEELS))
     elif sign.symbol in _REPEATED and sign.count > 1:
-        figure = _row(_FIGURES[sign.symbol], min(sign.count, _MOST_CONNECTORS))
+        figure = _repeated(_FIGURES[sign.symbol], min(sign.count, _MOST_CONNECTORS))
     else:
         figure = _FIGURES[sign.symbol]
-    return _sounding(figure, sign) if sign.sounding else figure
+    return _with_adcp(figure, sign) if sign.sounding else figure
 
 
-def _sounding(figure: SymbolFigure, sign: Sign) -> SymbolFigure:
-    """Add an ADCP to a symbol: acoustic beams upward or downward, or only transducers if the
-    direction is unknown.
-    """
+def _with_adcp(figure: SymbolFigure, sign: Sign) -> SymbolFigure:
     shift = _BEAM / 2 * (sign.up - sign.down)
 
     def draw(pen: Pen) -> None:
@@ -183,13 +183,14 @@ def _sounding(figure: SymbolFigure, sign: Sign) -> SymbolFigure:
                 pen.line(4.0 * slope, start, 12.0 * slope, start + direction * _BEAM,
                          stroke_dasharray="2.5 1.5", stroke_width=0.9)  # fmt: skip
         figure.draw(pen.group(0.0, shift))
+        # an ADCP of unknown direction has transducers, but no beams
         for x in (-4.5, 0.0, 4.5):
             pen.circle(x, shift, 1.9, fill=_DARK, stroke="none")
 
     return SymbolFigure(figure.height + _BEAM * (sign.up + sign.down), draw)
 
 
-def _row(figure: SymbolFigure, count: int) -> SymbolFigure:
+def _repeated(figure: SymbolFigure, count: int) -> SymbolFigure:
     def draw(pen: Pen) -> None:
         for number in range(count):
             figure.draw(pen.group(0.0, (number - (count - 1) / 2) * figure.height))
@@ -197,8 +198,7 @@ def _row(figure: SymbolFigure, count: int) -> SymbolFigure:
     return SymbolFigure(count * figure.height, draw)
 
 
-def _pack(sign: Sign) -> SymbolFigure:
-    """Draw balls alternately left and right of their chain."""
+def _pack_of_balls(sign: Sign) -> SymbolFigure:
     count = min(sign.count, _MOST_BALLS)
     fill = _GLASS if sign.symbol is Symbol.GLASS else _FLOAT
 
@@ -214,7 +214,7 @@ def _pack(sign: Sign) -> SymbolFigure:
     return SymbolFigure(2 * _BALL + (count - 1) * _BALL_PITCH + 3.0, draw)
 
 
-def _wheels(count: int) -> SymbolFigure:
+def _stack_of_wheels(count: int) -> SymbolFigure:
     height = count * _WHEEL + 8.0
 
     def draw(pen: Pen) -> None:
@@ -235,7 +235,7 @@ _BARE: dict[str, Any] = {"fill": "none"}
 
 
 def _figure(height: float, *parts: Callable[[Pen], None]) -> SymbolFigure:
-    """Create a symbol of a given height from SVG shapes, listed from back to front."""
+    """Create a symbol from SVG shapes, listed from back to front."""
 
     def draw(pen: Pen) -> None:
         for part in parts:

@@ -1,7 +1,7 @@
 """Drawings of a solved line in a terminal: side view, plan, tension, and current by depth.
 
-Each drawing consists of braille dots, with one text per row of cells, and can have any number of
-cells. Drawings of at least 20 by 6 cells have scales; larger ones show more.
+A drawing consists of braille dots and is returned as one text for each row of cells. Drawings can
+have any size. Drawings of at least 20 by 6 cells have scales; larger drawings show more.
 """
 
 from collections.abc import Iterable, Sequence
@@ -65,7 +65,7 @@ def elevation(
     seabed = side.seabed if side.seabed is not None and side.seabed <= side.bottom else None
     head = header_rows(height)
     rows = height - head - 2
-    named = _names(side, rows, int(_SHARE_OF_NAMES * width)) if width >= _NAMED_FROM else []
+    named = _placed_names(side, rows, int(_SHARE_OF_NAMES * width)) if width >= _NAMED_FROM else []
     room = max((cell_len(text) for _, text in named), default=-1) + 1
     across, down = _span(side), (side.top, side.bottom)
     unit = f"m to {bearing_text(bearing_of(*plane_of(result)))}" if moored else "m behind"
@@ -116,15 +116,14 @@ def _distance(result: AnyResult) -> str:
 
 
 def _span(side: LinePicture) -> tuple[float, float]:
-    """Return the horizontal range of the picture; an almost vertical line is centred."""
     low, high = side.span()
     spare = max(_LEAST_SPAN * (side.bottom - side.top) - (high - low), 0.0)
     margin = 0.04 * (high - low + spare) + spare / 2.0
     return low - margin, high + margin
 
 
-def _names(side: LinePicture, rows: int, room: int) -> list[tuple[int, str]]:
-    """Choose the names to write and their rows, each close to its part."""
+def _placed_names(side: LinePicture, rows: int, room: int) -> list[tuple[int, str]]:
+    """Choose rows for names; names are omitted until each name is close to its part."""
     height = (side.bottom - side.top) / rows
     found = sorted(line_picture.names(list(side.marks), height), key=lambda each: each[1].depth)
     while True:
@@ -133,7 +132,7 @@ def _names(side: LinePicture, rows: int, room: int) -> list[tuple[int, str]]:
         strayed = [abs(place - each) for place, each in zip(places, wanted, strict=True)]
         if not found or max(strayed) <= _FARTHEST:
             break
-        found.pop(_least(found, wanted, strayed.index(max(strayed))))
+        found.pop(_least_needed(found, wanted, strayed.index(max(strayed))))
     longest = min(room, _LONGEST_NAME)
     return [
         (round(place), text if cell_len(text) <= longest else text[: longest - 1] + ELLIPSIS)
@@ -141,8 +140,8 @@ def _names(side: LinePicture, rows: int, room: int) -> list[tuple[int, str]]:
     ]
 
 
-def _least(found: list[tuple[str, PictureMark]], wanted: list[float], crowded: int) -> int:
-    """Select which of several crowded names to omit, and return its index.
+def _least_needed(found: list[tuple[str, PictureMark]], wanted: list[float], crowded: int) -> int:
+    """Return the index of the name to omit among crowded names.
 
     Names of instruments are omitted first; among these, the name closest to the middle.
     """
@@ -193,7 +192,7 @@ def tension(result: LegResult, width: int, height: int) -> list[Text]:
     if result.towed:  # pieces are listed from the ship down, while the shape begins at the body
         pulls, along = pulls[::-1], (along[-1] - along)[::-1]
     greatest = max(float(pulls.max()), 1e-9)
-    loads = _allowable(result)
+    loads = _allowable_loads(result)
     near = [load for _, _, load in loads if load <= _HIGHEST_LOAD * greatest]
     scale, unit = (1e-3, "kN") if greatest >= _KILO else (1.0, "N")
     across = 0.0, 1.08 * max([greatest, *near]) * scale
@@ -201,7 +200,7 @@ def tension(result: LegResult, width: int, height: int) -> list[Text]:
     caption = f"at most {say('tension', greatest)}{'; dotted: limits' if near else ''}"
     frame = scaled_frame((width, height), caption, across, (0.0, length), unit)
     before = 0.0
-    for row, load in _weakest(loads, length, frame.rows * DOTS_DOWN):
+    for row, load in _least_load_by_row(loads, length, frame.rows * DOTS_DOWN):
         if load <= _HIGHEST_LOAD * greatest and (row % 2 == 0 or load != before):
             x, _ = frame.point(load * scale, 0.0)
             frame.canvas.dot(x, frame.row * DOTS_DOWN + row, LIMIT)
@@ -210,10 +209,8 @@ def tension(result: LegResult, width: int, height: int) -> list[Text]:
     return frame.canvas.rows()
 
 
-def _allowable(result: LegResult) -> list[tuple[float, float, float]]:
-    """Return start and end along the line [m] and allowable load [N] for each piece with a known
-    load.
-    """
+def _allowable_loads(result: LegResult) -> list[tuple[float, float, float]]:
+    """Return start [m], end [m] and allowable load [N] of each piece with a known load."""
     factors = result.file.checks.safety_factor
     surface = not result.towed and reaches_the_surface(result.leg)
     found, start = [], 0.0
@@ -225,7 +222,7 @@ def _allowable(result: LegResult) -> list[tuple[float, float, float]]:
     return found
 
 
-def _weakest(
+def _least_load_by_row(
     loads: list[tuple[float, float, float]], length: float, dots: int
 ) -> list[tuple[int, float]]:
     least: dict[int, float] = {}

@@ -1,6 +1,4 @@
-"""Drawing area of terminal cells with braille dots and characters, and the scales along its
-edges.
-"""
+"""Drawing area of terminal cells with braille dots, characters, and scales along the edges."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass

@@ -71,20 +71,24 @@ def _environment() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {"set_apart": set_apart, "breakable": _breakable, "kinds": _kinds}
+    environment.filters |= {
+        "set_apart": set_apart,
+        "breakable": _breakable,
+        "kinds": _class_attributes,
+    }
     environment.filters["css_text"] = _css_text
     environment.tests["of"] = lambda block, kind: type(block).__name__ == kind
     return environment
 
 
 def _css_text(text: str) -> str:
-    """Convert text to a style-sheet string, with all characters but letters and digits escaped."""
+    """Convert text to a CSS string; all characters but ASCII letters and digits are escaped."""
     signs = (one if one.isascii() and one.isalnum() else f"\\{ord(one):x} " for one in text)
     return f'"{"".join(signs)}"'
 
 
 def _breakable(text: str) -> str:
-    """Escape text so that long words may break at the edge of a column, but are copied unbroken."""
+    """Insert <wbr> into long words: lines may break there, but copied words remain whole."""
     from markupsafe import Markup
 
     if not _LONG_WORD.search(text):  # the usual case
@@ -94,8 +98,7 @@ def _breakable(text: str) -> str:
     return Markup("").join(words)
 
 
-def _kinds(columns: Sequence[Column]) -> list[str]:
-    """Return the HTML class of the cells in each column, which sets their alignment or width."""
+def _class_attributes(columns: Sequence[Column]) -> list[str]:
     from markupsafe import Markup
 
     def kind(column: Column) -> str:
