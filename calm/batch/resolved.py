@@ -30,7 +30,7 @@ replace it.
 
 
 class InputHash:
-    """SHA-256 hash of an input: first its text, then the measured values that are added."""
+    """SHA-256 hash of an input, computed from its text and then from the measured values."""
 
     def __init__(self, text: str) -> None:
         self._digest = hashlib.sha256(text.encode("utf-8", "surrogateescape"))
@@ -70,8 +70,7 @@ def resolved_input(
 def with_input(text: str) -> Attributes:
     """Return the result attributes for the input `text`, with a placeholder for the hash.
 
-    The final hash includes measured values that have not been read yet. It has the length of the
-    placeholder, and replaces the placeholder later.
+    The hash replaces the placeholder after the measured values are read; both have the same length.
     """
     return {RESOLVED: text, **InputHash(text).attributes()}
 

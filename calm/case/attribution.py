@@ -56,8 +56,8 @@ index of its clamp or -1.
 """
 
 Varied = Callable[[int, Line], Floats]
-"""Function that returns the three values of `Attribution` after the line of one numbered leg is
-replaced.
+"""Function of the number of a leg and a new line for this leg, which returns the three values of
+`Attribution`.
 """
 
 
@@ -139,11 +139,10 @@ def with_drag(line: Line, pieces: float | Floats, clamps: float | Floats | None 
 
 
 def _parts_with_drag(line: Line) -> list[tuple[int, int]]:
-    """List the parts with drag, down the line, each piece followed by its clamps."""
     pieces = np.flatnonzero((line.normal_drag > 0.0) | (line.tangential_drag > 0.0))
     clamps = np.flatnonzero(line.clamp_drag > 0.0)
     parts = [(int(p), -1) for p in pieces] + [(int(line.clamp_piece[m]), int(m)) for m in clamps]
-    return sorted(parts)
+    return sorted(parts)  # down the line, each piece before its clamps
 
 
 def _with_part(line: Line, piece: int, clamp: int, factor: float) -> Line:
