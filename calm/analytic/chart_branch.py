@@ -203,7 +203,7 @@ class Branch:
 
     @cached_property
     def _cumulative(self) -> dict[float, Floats]:
-        """Return arc length and distance from the apex to the end of each panel, for each side."""
+        """Arc length and distance from the apex to the end of each panel, for each side."""
         edges: Floats = np.arange(_PANELS + 1) * np.float64(_PANEL)
         tables = {}
         for limit in (self.limit, -self.limit):

@@ -339,7 +339,7 @@ class Batch:
         endings: Integers,
         room: int,
     ) -> None:
-        """Solve profiles with work arrays for `room` segments, or with larger arrays if necessary."""
+        """Solve profiles with work arrays for `room` segments, or larger arrays if necessary."""
         self._march(leg, current, rows, endings, room, self._starts)
         again = np.flatnonzero(endings == LACKS_ROOM)
         if again.size:

@@ -58,7 +58,7 @@ def metavar(option: str) -> str | None:
 
 
 class HelpAtWidth:
-    """Formatter of `--help` that uses the width of the terminal and names the value of each option."""
+    """Formatter of `--help` that fills the terminal width and names the value of each option."""
 
     def __call__(self, console: Console, options: ConsoleOptions, panel: HelpPanel) -> None:
         from cyclopts.help import DefaultFormatter

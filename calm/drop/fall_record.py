@@ -23,8 +23,8 @@ MOMENTS = 5
 class DepthReached:
     """Largest depth that a piece or clamp reaches while the line falls and settles.
 
-    As in all tables, the depth of a piece is that of its upper end. As in the design check, the
-    depth rating is compared with the depth of the deeper end.
+    As in all tables, the depth of a piece is the depth of its upper end. As in the design check,
+    the depth rating is compared with the depth of the deeper end.
 
     Attributes
     ----------

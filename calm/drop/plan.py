@@ -334,7 +334,6 @@ def _one_or_all(times: Mapping[str, float] | None) -> float | dict[str, float] |
 
 
 def _equilibrium(mooring: Design) -> Result | None:
-    """Solve the mooring; return None if it is slack in still water and has no unique shape."""
     try:
         return mooring.solve()
     except NoEquilibrium as failure:
@@ -344,7 +343,7 @@ def _equilibrium(mooring: Design) -> Result | None:
 
 
 def _split(state: ChainState, toward: Floats) -> tuple[float, float]:
-    """Return the distances of the anchor towards the float and to the right of it [m]."""
+    """Return the distances of the anchor towards the float and to the right of that direction [m]."""
     (east, north), (x, y) = state.node[-1, :2].tolist(), toward.tolist()
     return east * x + north * y, east * y - north * x
 
@@ -354,12 +353,8 @@ def _run_start(
 ) -> RunStart:
     """Compute the start of the run, with cables paid out at the speed of the ship.
 
-    Parameters
-    ----------
-    heading : (2,) direction of the ship
-    speed : speed of the ship over the ground [m/s]
-    past : distance past the target at which the anchor is released, along the course [m]
-    deck_time : see `drop_plan`
+    `heading` is the direction (2,) of the ship, `speed` its speed over the ground [m/s], and `past`
+    the distance past the target at which the anchor is released [m].
     """
     pieces = leg.file.pieces[:-1]
     roles = [piece.component.role for piece in pieces]

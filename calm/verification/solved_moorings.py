@@ -168,8 +168,7 @@ def _centre(piece: int, solution: Solution) -> tuple[float, float]:
     return offset, 0.5 * (height_at(solution, first) + height_at(solution, last))
 
 
-def _stretched(piece: int, solution: Solution) -> float:
-    """Return the length of a piece under load [m]."""
+def _stretched_length(piece: int, solution: Solution) -> float:
     first, last = solution.piece_nodes[piece].tolist()
     place = solution.position[first : last + 1]
     return float(np.linalg.norm(np.diff(place, axis=0), axis=1).sum())
@@ -260,7 +259,7 @@ tension.""",
              lambda: _centre(_FIRST_GLASS, solved_cdms_1())[1], Kind.PUBLISHED),
         Case("C16 printed: 98 m of Kevlar under load", 98.24, "m", 0.011,
              "Printed to the centimetre, plus 2 % of the stretch for the error of the tension.",
-             lambda: _stretched(_FIRST_KEVLAR, solved_cdms_1()), Kind.PUBLISHED),
+             lambda: _stretched_length(_FIRST_KEVLAR, solved_cdms_1()), Kind.PUBLISHED),
     ),
     picture="verification-cdms-1",
 )  # fmt: skip

@@ -287,7 +287,7 @@ def _plumb() -> float:
 def _alone() -> float:
     """Return the terminal speed of a heavy sphere on a light thread with a cork [m/s].
 
-    The thread and the cork hardly affect it.
+    The thread and the cork hardly affect the speed.
     """
     line = line_of(
         LinePiece(0.05, False, 1.0, 1e-3, directional=False), cable(300.0, 1e-6, 1e-6, 1.3, 0.0)

@@ -97,12 +97,10 @@ def _identity(speed: float) -> Case:
 
 
 def _thread(length: float, force: float, place: float, angle: float) -> list[CaseColumn[Ends]]:
-    """Return the table columns for a float on a thread.
+    """Return the table columns for a float on a thread of a given length [m].
 
-    Parameters
-    ----------
-    length : length of the thread [m]
-    force, place, angle : tolerances of forces [N], positions [m] and angles [degrees]
+    `force`, `place` and `angle` are the tolerances of forces [N], positions [m] and angles
+    [degrees].
     """
     return [
         CaseColumn("drag", "N", force, lambda ends: ends.horizontal),

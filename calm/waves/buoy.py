@@ -207,11 +207,11 @@ class Buoy:
     ) -> tuple[Floats, Floats, Complexes]:
         """Compute added mass (3, f), damping (3, f) and exciting forces (2, f), as in `pitch`.
 
-        All are integrated over the sections of the hull. Exciting forces include the wave pressure
-        on the hull and the inertia of the water, with the local acceleration. The added mass of the
-        sections is reduced by `END_LOSS`, and that of the bottom follows from `DISC_TURNED`.
-        Radiation follows from Haskind's relation, k ω Xi Xj / (4 ρ g²) in deep water (Newman 1977,
-        6.18).
+        All results are integrated over the sections of the hull. Exciting forces include the wave
+        pressure on the hull and the inertia of the water, with the local acceleration. The added
+        mass of the sections is reduced by `END_LOSS`, and that of the bottom follows from
+        `DISC_TURNED`. Radiation follows from Haskind's relation, k ω Xi Xj / (4 ρ g²) in deep water
+        (Newman 1977, 6.18).
         """
         radius, height = profile.T
         area = pi * radius**2
