@@ -97,7 +97,7 @@ def read_designs(
         _refuse_equal_names(its)
     called = _unique_names({path: its[0].file.name for path, its in by_path.items()})
     designs = [
-        DesignFile(path, called[path], _with_equal_cuts(its)) for path, its in by_path.items()
+        DesignFile(path, called[path], _with_cuts_of_first(its)) for path, its in by_path.items()
     ]
     return designs, tows
 
@@ -129,8 +129,7 @@ def _unique_names(names: dict[Path, str]) -> dict[Path, str]:
         }
 
 
-def _with_equal_cuts(moorings: Sequence[Design]) -> tuple[Design, ...]:
-    """Use the cut lengths that fit in the first environment for every environment."""
+def _with_cuts_of_first(moorings: Sequence[Design]) -> tuple[Design, ...]:
     from calm.case import Design
     from calm.case.memory import Memory
 

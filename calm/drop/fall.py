@@ -196,7 +196,6 @@ def _passing(before: ChainState, after: ChainState, bottom: float) -> ChainState
 
 
 def _stepped(mover: Mover, state: ChainState, step: float, depth: float) -> ChainState:
-    """Advance by one time step, or by a shorter step if necessary."""
     shortest = _SHORTEST * depth
     extrapolations = (False, True) if state.velocity.any() else (True,)
     while step > shortest:

@@ -328,7 +328,6 @@ def drop_plan(
 
 
 def _one_or_all(times: Mapping[str, float] | None) -> float | dict[str, float] | None:
-    """Return the handling time as one number if it is the same for all roles, else by role."""
     once = set((times or {}).values())
     return once.pop() if len(once) == 1 else None if times is None else dict(times)
 
@@ -343,7 +342,7 @@ def _equilibrium(mooring: Design) -> Result | None:
 
 
 def _split(state: ChainState, toward: Floats) -> tuple[float, float]:
-    """Return the distances of the anchor towards the float and to the right of that direction [m]."""
+    """Return the distances of the anchor towards the float and to the right of this line [m]."""
     (east, north), (x, y) = state.node[-1, :2].tolist(), toward.tolist()
     return east * x + north * y, east * y - north * x
 

@@ -116,9 +116,6 @@ class _Setting:
     def respond(
         self, sea: SeaState, first: Floats | None = None, *, once: bool = False, drag: float = 1.0
     ) -> tuple[WaveResponse, Floats]:
-        """Compute the response to a sea state, and the flow past the nodes; `first` is an initial
-        estimate of this flow.
-        """
         waves = self.waves(sea)
         return respond(self.line, self.buoy, waves, sea, drag_factor=drag, first=first, once=once)
 
