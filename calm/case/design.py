@@ -417,7 +417,7 @@ class Result:
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """All warnings, beginning with those of the file."""
+        """Warnings of the file, followed by warnings about the result."""
         if not self.several:
             return self.leg.warnings
         return (

@@ -109,7 +109,7 @@ class ColumnTable(Columnar, Generic[Row]):
 
     @classmethod
     def joined(cls, tables: Sequence[Self]) -> Self:
-        """Return the rows of several tables as one table."""
+        """Join the rows of several tables in one table."""
         columns = {name: [getattr(table, name) for table in tables] for name in cls.names()}
         whole = {
             name: [*chain(*parts)] if isinstance(parts[0], list) else np.concatenate(parts)

@@ -215,8 +215,8 @@ class Outputs:
     suffixes: tuple[str, ...] = SUFFIXES
 
     def apiece(self, path: Path) -> list[Path]:
-        """Return the path of an output for each input file. With several input files, the path
-        includes the name of each.
+        """Return the path of an output for each input file. With several input files, each path
+        includes the name of its input file.
         """
         if len(self.files) == 1:
             return [path]

@@ -79,7 +79,7 @@ class Elements:
         return np.stack([1.0 - self.place, self.place])
 
     def summed(self, per_load: Floats) -> Floats:
-        """Sum the values of the loads (..., k) on each bar; return values per bar (..., n)."""
+        """Return the sums (..., n) over the loads on each bar, from values (..., k) per load."""
         total: Floats = np.add.reduceat(per_load, self._first, axis=-1)
         return total
 

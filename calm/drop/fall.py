@@ -30,9 +30,7 @@ SLOWEST_FLOW = 0.01
 STREAMED_WITHIN = 1e-4
 """Tolerance of the streamed distance, as a fraction of the line length."""
 LEAST_COMPRESSION = 1e-4
-"""Smallest compression of a settled bar that is laid down, as a fraction of the sum of all
-weights.
-"""
+"""Compression above which a settled bar is laid down, as a fraction of the sum of all weights."""
 _FALLS = 3
 RELEASED_SHARE = 0.6
 """Fraction of the anchor's weight that the ship still carries in the second step, and factor on

@@ -230,7 +230,7 @@ def piece_tensions(drop: Motion) -> tuple[Floats, Floats]:
 
 
 def _ends_of_pieces(drop: Motion, tension: Floats) -> Floats:
-    """Select tensions at the ends of pieces (t, p, 2) from those at the ends of bars (t, n, 2)."""
+    """Select the tensions (t, p, 2) at the ends of pieces from the tensions (t, n, 2) of bars."""
     first, end = drop.mover.chain.bars.T
     last = np.maximum(end, first + 1) - 1
     found = np.stack([tension[:, first, 0], tension[:, last, 1]], axis=2)

@@ -60,7 +60,7 @@ class CountedLimit:
         return _VALUES[self.criterion.quantity](own, self.criterion.part, self.leg)
 
     def broken(self, values: Column) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-        """Return, for each value (n,), whether the value violates the limit; false for NaN."""
+        """Return whether each value (n,) violates the limit; NaN does not."""
         limit = self.criterion.limit
         assert limit is not None
         beyond = values < limit if self.criterion.least else values > limit
@@ -90,7 +90,6 @@ def limits_of(mooring: Design) -> tuple[CountedLimit, ...]:
 
 
 def _on_estimate(rule: Rule, criterion: Criterion, leg: Leg) -> bool:
-    """Return whether the limit of a criterion is set by a value that is only an estimate."""
     figures, place = TEXTS[rule.name].figures, criterion.part.place
     if criterion.figure:
         figures = tuple(name for name in figures if name == criterion.figure)
@@ -276,7 +275,6 @@ def _rule_share(
     unsolved: int,
     exceedances: tuple[Exceedance, ...],
 ) -> RuleShare:
-    """Convert numbers of profiles to the fractions for a rule."""
     return RuleShare(
         name=rule.name,
         title=rule.title,
