@@ -1,7 +1,7 @@
 """Solution of successive profiles with the search of `calm.solve`, and calculation of the results.
 
 A profile is solved to a tolerance of about a millionth of the depth, and without an audit. The
-results are extrapolated from solutions with segments of two lengths, one half of the other.
+results are extrapolated from two solutions, one of which has segments of half the length.
 """
 
 from math import atan2, inf, isfinite, nan, pi, sqrt

@@ -7,10 +7,10 @@ multiplied by λ_i. The share of drag i is its Aumann–Shapley value,
 
 All drags increase together from zero to full size. At every stage, each drag is attributed the
 change that its own increase causes. The shares add up to y(1 … 1) − y(0 … 0). Among the rules with
-this property, it is the only one that is independent of the division of the line into components
-and attributes zero to a drag without effect (Billera & Heath, Mathematics of Operations Research 7,
-1982). Removing one component at a time does not work: the differences do not add up, since drags
-interact.
+this property, the Aumann–Shapley value is the only rule that is independent of the division of the
+line into components and attributes zero to a drag without effect (Billera & Heath, Mathematics of
+Operations Research 7, 1982). Removing one component at a time does not work: the differences do not
+add up, since drags interact.
 
 If drags are proportional to the square of the speed, the stage s = t² is equivalent to a current
 multiplied by t.

@@ -417,7 +417,7 @@ class Result:
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """Warnings of the file, followed by warnings about the result."""
+        """Notices of the file, followed by warnings about the result."""
         if not self.several:
             return self.leg.warnings
         return (
@@ -572,7 +572,7 @@ class Result:
     def plot(self, ax: Any = None) -> Any:
         """Draw a side view of the line on matplotlib axes, and return the axes.
 
-        Without `ax` the axes are those of a new figure. Raises UsageError if matplotlib is not
+        Without `ax`, the line is drawn in a new figure. Raises UsageError if matplotlib is not
         installed.
         """
         form = type(self).plot_form

@@ -135,8 +135,8 @@ def mapped(
     function : a module-level function, which another process can import
     workers : number of processes; None for one per core
     what : noun for the tasks, in the plural
-    meanwhile : function called in this process while other processes work; it is not called if
-        there are none
+    meanwhile : function called in this process while other processes work, unless there are
+        none
     """
     workers = min(workers or os.cpu_count() or 1, len(tasks))
     if workers < 2 or len(tasks) <= FEW:

@@ -197,7 +197,9 @@ def depths_of(pieces: Sequence[Piece], drop: Motion, rest: Motion) -> tuple[Dept
 
 
 def _depths(chain: BarChain, state: ChainState) -> tuple[Floats, Floats]:
-    """Return the depths [m] of the upper and lower ends of all pieces, and then of the clamps."""
+    """Return the depths [m] of the upper ends and of the deeper ends of all pieces, each followed
+    by the depths of the clamps.
+    """
     upper, lower = (-end[:, 2] for end in piece_ends(chain, state))
     clamps = -place_of(state, chain.clamp_bar, chain.clamp_place)[:, 2]
     return np.append(upper, clamps), np.append(np.maximum(upper, lower), clamps)

@@ -68,7 +68,8 @@ def _solved() -> Solution:
 def _apart(one: Solution, other: Solution) -> float:
     """Return the largest difference between two solutions at the ends of their pieces.
 
-    Differences in position are divided by the depth, and those in tension by the largest tension.
+    Differences in position are divided by the depth, and differences in tension by the largest
+    tension.
     """
     here, there = one.piece_nodes.ravel(), other.piece_nodes.ravel()
     place = np.abs(one.position[here] - other.position[there]).max() / one.water.depth

@@ -1,6 +1,6 @@
 """Linear response of a line to waves, frequency by frequency.
 
-Drag is linearised so that it dissipates the same energy.
+The linearised drag dissipates the same energy as the quadratic drag.
 """
 
 from __future__ import annotations

@@ -64,7 +64,7 @@ class Level:
     period : return period T [years]. With GEV, the annual maximum exceeds the level in one of T
         years on average; with POT, a peak exceeds the level once in T years on average
     level : estimated return level
-    low, high : ends of the confidence interval; None if the data do not determine it
+    low, high : ends of the confidence interval; None for an end that the data do not determine
     """
 
     period: int

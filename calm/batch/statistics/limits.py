@@ -192,10 +192,11 @@ class Exceedance:
     `count` is the number of profiles in which the limit can be evaluated, and `share` the fraction
     of these profiles that exceed the limit.
 
-    If the limit is an estimate, profiles that exceed it are left out of both numbers.
+    If the limit is an estimate, profiles that exceed the limit are excluded from both numbers.
 
-    `worst` is the value farthest beyond the limit, or the value closest to the limit if no value is
-    beyond it. `time` is the time of this value. Both are None if there is no limit or no value.
+    `worst` is the value farthest beyond the limit or, if no value is beyond the limit, the value
+    closest to the limit. `time` is the time of this value. `worst` and `time` are None if there is
+    no limit or no value.
     """
 
     limit: CountedLimit
