@@ -58,16 +58,13 @@ def __getattr__(name: str) -> object:
 
     value = getattr(import_module(home), name)
     if home.startswith("calm.case"):
-        _give_results_their_forms()
+        _register_result_forms()
     globals()[name] = value
     return value
 
 
-def _give_results_their_forms() -> None:
-    """Connect results to the functions that show them in a notebook, plot them and make datasets.
-
-    These functions are in packages that `calm.case` must not import.
-    """
+def _register_result_forms() -> None:
+    # these functions use packages that `calm.case` must not import
     from calm.case import Result
 
     def html(result: Result) -> str:

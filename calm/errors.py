@@ -207,13 +207,12 @@ def nearest(text: str, known: Iterable[str]) -> str | None:
 
 
 def _parts(name: str) -> list[str]:
-    """Split a name into words and numbers; a size in millimetres, such as ``12mm``, is a number."""
     parts = re.split(r"[\W_]+", name.casefold())
+    # a size in millimetres, such as 12mm, is a number
     return [re.sub(r"(?<=\d)mm$", "", part) for part in parts if part]
 
 
 def _likeness(wanted: Sequence[str], parts: Sequence[str]) -> float:
-    """Mean similarity between the wanted parts and the parts of a name; 1 if all are equal."""
     best = [max((_similarity(one, other) for other in parts), default=0.0) for one in wanted]
     return sum(best) / max(len(best), 1) - 0.02 * max(len(parts) - len(wanted), 0)
 

@@ -182,12 +182,11 @@ def parse_quantity(text: object, dimension: str, *, usual_unit: str | None = Non
     """
     if isinstance(text, bool) or not isinstance(text, (str, int, float)):
         raise QuantityError(f"is not {_described(DIMENSIONS[dimension])}")
-    return _parsed(str(text).strip(), dimension, usual_unit)
+    return _parse_stripped(str(text).strip(), dimension, usual_unit)
 
 
 @functools.lru_cache(maxsize=4096)
-def _parsed(text: str, dimension: str, usual_unit: str | None) -> float:
-    """Parse a stripped text to its SI value."""
+def _parse_stripped(text: str, dimension: str, usual_unit: str | None) -> float:
     wanted = DIMENSIONS[dimension]
     if dimension in HEMISPHERES:
         try:
@@ -196,7 +195,7 @@ def _parsed(text: str, dimension: str, usual_unit: str | None) -> float:
             raise QuantityError(str(error)) from None
         if placed is not None:
             return placed
-    number, unit = _split(text, wanted)
+    number, unit = _split_number_and_unit(text, wanted)
     if unit:
         try:
             value = number * unit_factor(unit, dimension)
@@ -327,8 +326,7 @@ _SCALES = {
 """Names of temperature units, letters only, and their names in pint."""
 
 
-def _split(text: str, wanted: Dimension) -> tuple[float, str]:
-    """Split a text into the number at its beginning and the unit after the number."""
+def _split_number_and_unit(text: str, wanted: Dimension) -> tuple[float, str]:
     fraction = _FRACTION.match(text)
     if fraction:
         sign, whole, numerator, denominator = fraction.groups()
@@ -385,7 +383,6 @@ def _registry() -> pint.UnitRegistry[float]:
 
 
 def _factor_by_pint(unit: str, wanted: Dimension) -> float:
-    """Return the factor of a unit that is not in the table."""
     import difflib
 
     import pint

@@ -9,8 +9,8 @@ def built_from() -> str:
     """Return the commit of this installation, such as ``4c1fd21``, with ``-dirty`` if a checkout
     has changes.
 
-    A wheel stores the commit in a file; in a checkout, git supplies it. The text is empty if the
-    commit is unknown.
+    A wheel stores the commit in a file; in a checkout, git supplies the commit. The text is empty
+    if the commit is unknown.
     """
     package = Path(__file__).parent
     written = package / "_shipped" / "commit"

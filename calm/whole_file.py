@@ -76,7 +76,7 @@ def put(
     with beside(target) as part:
         part.write_bytes(content)
         if like is not None:
-            _give(part, like)
+            _copy_owner_and_mode(part, like)
         if durable:
             _flush(part)
     if durable:
@@ -127,8 +127,8 @@ def _flush(path: Path) -> None:
         os.close(handle)
 
 
-def _give(part: Path, like: os.stat_result) -> None:
-    """Set owner and group separately, because a user may be allowed to change the group alone."""
+def _copy_owner_and_mode(part: Path, like: os.stat_result) -> None:
+    # group and owner are set separately, because a user may be allowed to change the group alone
     for owner in ((-1, like.st_gid), (like.st_uid, -1)):
         with contextlib.suppress(OSError, AttributeError):
             os.chown(part, *owner)
@@ -168,7 +168,6 @@ def read_head(path: Path, most: int) -> bytes:
 
 @contextlib.contextmanager
 def _regular(path: Path) -> Iterator[None]:
-    """Raise InputError if the path is not a regular file or the file cannot be read."""
     try:
         if path.is_dir():
             raise refused(path, "is a folder; a file is needed")

@@ -199,7 +199,6 @@ def between(
 
 
 def _refuse_slack(x: float, z: float, length: float, weight: float, stiffness: float) -> None:
-    """Raise ValueError for a line so long that it hangs vertically and lies slack on the seabed."""
     if not z > 0.0:
         raise ValueError(f"the upper end must be above the seabed: its height is {z:g} m")
     # hanging plumb: z = l + w l²/(2 EA), l the unstretched length

@@ -25,7 +25,7 @@ class ChartSolution:
     Parameters
     ----------
     phi_a, phi_b : angle from the current to the direction of the cable (from A to B), at the lower
-        end A and the upper end B [rad], from −π to π; negative where the cable descends
+        end A and the upper end B [rad], from −π to π; negative if the cable descends
     tension_a, tension_b : tension at the lower and upper end [N]
     height, distance, length : height of B above A, distance of B downstream of A, and length of the
         cable [m]
@@ -165,7 +165,7 @@ def _on_branch(
         pieces = LengthSearch(branch, cosine, third, sizes[third] / length).pieces()
     else:
         pieces = search.pieces(start, end)
-    cables = [_cable(branch, piece, turned) for piece in _distinct(pieces)]
+    cables = [_scaled_cable(branch, piece, turned) for piece in _distinct(pieces)]
     return [cable for cable in cables if cable is not None]
 
 
@@ -182,8 +182,7 @@ def _distinct(pieces: list[Piece]) -> list[Piece]:
 _SCALES = ("length", "tension_b", "height", "tension_a", "distance")
 
 
-def _cable(branch: Branch, piece: Piece, sizes: Mapping[str, float]) -> ChartSolution | None:
-    """Scale a part of the curve to its given size; None if the scale would not be positive."""
+def _scaled_cable(branch: Branch, piece: Piece, sizes: Mapping[str, float]) -> ChartSolution | None:
     unit = {name: float(size_of(branch, name, *piece)) for name in SIZES}
     name = next(name for name in _SCALES if name in sizes)
     scale = sizes[name] / unit[name] if unit[name] else 0.0

@@ -7,8 +7,8 @@ water [N/m], φ the angle between cable and current, and s the arc length up the
 
 In units of H₀ = T(apex)/w and w H₀, all cables with the same K are pieces of one curve with its
 origin at the apex φ = 0. Beyond the critical angle φ_c, where g vanishes, lies a second branch with
-its apex at φ = 180°. It is the mirror image of the first branch for −K, so `Branch` represents
-both.
+its apex at φ = 180°. The second branch is the mirror image of the first branch for −K, so `Branch`
+represents both.
 
 With u = cos φ and u_c = cos φ_c, dT/T = −du/g integrates to
 
@@ -203,7 +203,7 @@ class Branch:
 
     @cached_property
     def _cumulative(self) -> dict[float, Floats]:
-        """Return arc length and distance from the apex to the end of each panel, for each side."""
+        """Arc length and distance from the apex to the end of each panel, for each side."""
         edges: Floats = np.arange(_PANELS + 1) * np.float64(_PANEL)
         tables = {}
         for limit in (self.limit, -self.limit):

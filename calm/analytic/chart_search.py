@@ -270,12 +270,10 @@ class LengthSearch:
             return first, abs(first) * _LEAST_RISE + float(above)
 
         def miss(at: Floats) -> Floats:
-            """Return the mean cosine and the logarithm of the third fraction, minus their required
-            values.
-            """
             place = piece(at)
             arc, distance = self.branch.span(*place)
             third = size_of(self.branch, self.third, *place)
+            # mean cosine and logarithm of the third fraction, minus their required values
             return np.array([distance / arc - self.cosine, np.log(third / (arc * self.share))])
 
         with np.errstate(all="ignore"):

@@ -193,11 +193,9 @@ class Hodograph:
     def _panels(self, start: float, step: float) -> list[float]:
         """Divide a step of m at the kink of the friction, and by factors of 4 in m on both sides of
         the kink.
-
-        The line turns within the first few parts; quadrature over the whole of a long step would
-        miss this.
         """
         low, high = sorted((start, start + step))
+        # the line turns within the first few parts, which quadrature over a long step would miss
         edge, cuts = self._upright or self._a, []
         while edge < high:
             if edge > low:

@@ -231,7 +231,7 @@ def unequal_cable(
 
     The tension is an elementary function; the coordinates are integrated numerically.
 
-    The parameters and errors are those of `quadratic_cable`, but the drags contain V instead of V²,
+    The parameters and errors are as in `quadratic_cable`, but the drags contain V instead of V²,
     and the angle must be less than π away from α_d.
 
     Notes

@@ -81,12 +81,10 @@ def on_cluster(
 
 def solve_there(mooring: Design, task: BlockTask) -> SolvedBlock:
     """Solve a block on a worker of the dask scheduler."""
-    return solve_block(_ready(mooring), task)
+    return solve_block(_prepared_batch(mooring), task)
 
 
+# cached, because every block needs the batch and its preparation is slow
 @lru_cache(maxsize=2)
-def _ready(mooring: Design) -> Batch:
-    """Return the prepared batch of a mooring. It is cached because every block needs it and its
-    preparation is slow.
-    """
+def _prepared_batch(mooring: Design) -> Batch:
     return Batch(mooring)

@@ -23,8 +23,7 @@ from calm.files.pieces import clamps_down
 from calm.records.record import Record
 
 _COORDINATES = {"component": "component_label depth_top", "clamp": "clamp_label clamp_depth"}
-"""Names of the label and depth variables that are the coordinates of variables with a given
-dimension.
+"""Label and depth variables of each dimension, for the attribute `coordinates` of other variables.
 """
 _TIME_UNITS = (("seconds", 10**9), ("milliseconds", 10**6), ("nanoseconds", 1))
 
@@ -106,9 +105,6 @@ def time_axis(time: NDArray[np.datetime64], meaning: str) -> Variable:
 
 
 def _station(mooring: Design, record: Record) -> tuple[list[Variable], str]:
-    """Describe the mooring as a station; if its file has no position, use the position of the
-    currents.
-    """
     name, position = mooring.file.name or "mooring", mooring.file.position
     if position is not None:
         return station(name, (position.latitude, position.longitude), "the anchor")

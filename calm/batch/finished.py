@@ -56,7 +56,7 @@ def labels_of(dataset: Dataset, name: str) -> tuple[str, ...]:
 
 
 def place_of(dataset: Dataset, label: str) -> tuple[str, int]:
-    """Find a part of the line in a result: the prefix of its variable names, and its column number.
+    """Return the prefix of the variable names and the column number of a part of the line.
 
     Parameters
     ----------

@@ -310,7 +310,6 @@ class NetProfiles:
         outcome(solve_net_rows, True, *given)
 
     def _columns(self, rows: NetRows) -> dict[str, Floats]:
-        """Compute the result columns from the rows of all profiles."""
         file, count = self.net.file, len(rows.shares)
         pieces, clamps, legs = (row.shape[1] for row in rows)
         place, tilt = np.zeros((count, pieces, 3)), np.zeros((count, pieces))
@@ -378,7 +377,6 @@ class NetProfiles:
         self, current: tuple[Floats, ...], case: int, columns: dict[str, Floats],
         status: NDArray[np.int8],
     ) -> None:  # fmt: skip
-        """Solve one profile as in `calm run`."""
         (depth, u, v, w), still = current, self.still
         read = np.zeros((depth.shape[1], 4))
         levels = depth[case if len(depth) > 1 else 0]

@@ -163,9 +163,9 @@ def solve_profiles(
     """Solve a mooring for many current profiles.
 
     Each profile replaces the current of the file; everything else, such as density and wind, stays
-    the same. The results of a profile are the same to the last bit, whatever the order of the
-    profiles, the other profiles and `workers` are. The results agree with `calm run` to 1e-4 of the
-    water depth and 2e-4 of the tension.
+    the same. The results of a profile depend neither on other profiles nor on `workers`, not even
+    in the last bit. The results agree with `calm run` to 1e-4 of the water depth and 2e-4 of the
+    tension.
 
     Parameters
     ----------
@@ -195,7 +195,7 @@ def solve_profiles(
     if is_record(u):
         if any(each is not None for each in (v, depth, w)):
             raise TypeError("a record contains the whole current; omit v, depth and w")
-        levels, east, north, up = _recorded(mooring, u)
+        levels, east, north, up = _levels_of_record(mooring, u)
         return batch.solve(east, north, levels, up, workers=workers)
     if v is None or depth is None:
         raise TypeError(
@@ -204,8 +204,7 @@ def solve_profiles(
     return batch.solve(cast("ArrayLike", u), v, depth, w, workers=workers)
 
 
-def _recorded(mooring: Design, given: Any) -> Levels:
-    """Return depth, u, v, w of all profiles of a record."""
+def _levels_of_record(mooring: Design, given: Any) -> Levels:
     from calm.records.current_file import open_record
     from calm.records.current_terms import Terms
 
@@ -248,7 +247,7 @@ class Batch:
             measured = self._solve_together(current, workers)
         else:
             measured, _ = self._solve_alone(self.mooring.moored, current, workers)
-        return measured if shape == measured.status.shape else _shaped(measured, shape)
+        return measured if shape == measured.status.shape else _reshaped(measured, shape)
 
     def slopes(self, u: Floats, v: Floats, depth: Floats) -> tuple[Profiles, Floats]:
         """Solve profiles (n, k) of a moored line in one thread, with derivatives of the depths.
@@ -270,7 +269,9 @@ class Batch:
     def _solve_alone(
         self, leg: Leg, current: tuple[Floats, ...], workers: int | None, columns: int = 0
     ) -> tuple[Profiles, Floats]:
-        """Return the profiles, and the derivatives of the depths by so many current components."""
+        """Return the profiles, and the derivatives of the depths with respect to `columns`
+        components of the current.
+        """
         count = len(current[1])
         rows = unsolved(leg.line, count, columns)
         status = np.zeros(count, np.int8)
@@ -299,9 +300,6 @@ class Batch:
         )
 
     def _implausible(self, current: tuple[Floats, ...]) -> NDArray[np.bool_]:
-        """Return whether each profile (n,) has a level with an impossible speed, or a level deeper
-        than any ocean.
-        """
         greatest = self.mooring.file.environment.maximum_speed
         depth, u, v, w = current
         return np.asarray(implausible(depth, u, v, w, greatest).any(axis=1))
@@ -341,9 +339,7 @@ class Batch:
         endings: Integers,
         room: int,
     ) -> None:
-        """Solve profiles with work arrays for `room` segments, and again with larger arrays if
-        necessary.
-        """
+        """Solve profiles with work arrays for `room` segments, or larger arrays if necessary."""
         self._march(leg, current, rows, endings, room, self._starts)
         again = np.flatnonzero(endings == LACKS_ROOM)
         if again.size:
@@ -395,7 +391,7 @@ class Batch:
 def unsolved(line: Line, count: int, columns: int = 0) -> Results:
     """Create results filled with NaN for `count` profiles.
 
-    They include derivatives with respect to `columns` components of the current.
+    The results include derivatives with respect to `columns` components of the current.
     """
     pieces, clamps = len(line.length), len(line.clamp_piece)
     shapes = [
@@ -420,8 +416,8 @@ def _checked(
     """Check the input arrays. Return the dimensions of the profiles, and depth, u, v, w as
     two-dimensional arrays.
     """
-    east, north, down = _numbers(u), _numbers(v), _numbers(depth)
-    up = np.broadcast_to(np.zeros(()), east.shape) if w is None else _numbers(w)
+    east, north, down = _numeric_array(u), _numeric_array(v), _numeric_array(depth)
+    up = np.broadcast_to(np.zeros(()), east.shape) if w is None else _numeric_array(w)
     if not east.ndim or not east.shape == north.shape == up.shape:
         raise ValueError(
             "u, v and w must have the same shape, profiles by levels; their shapes are "
@@ -440,16 +436,14 @@ def _checked(
     return shape, (down.reshape(rows, levels), flat[0], flat[1], flat[2])
 
 
-def _numbers(values: ArrayLike) -> NDArray[Any]:
-    """Convert the input to an array, with NaN for masked values."""
+def _numeric_array(values: ArrayLike) -> NDArray[Any]:
     array: NDArray[Any] = np.ma.filled(values, np.nan) if np.ma.isMA(values) else np.asarray(values)
     if array.dtype.kind not in "iuf":
         raise TypeError(f"the current must be numeric, not {array.dtype}")
     return array
 
 
-def _shaped(profiles: Profiles, shape: tuple[int, ...]) -> Profiles:
-    """Reshape the results from n profiles to the dimensions of the input."""
+def _reshaped(profiles: Profiles, shape: tuple[int, ...]) -> Profiles:
     columns: dict[str, Any] = {
         name: array.reshape(shape + array.shape[1:])
         for name, array in vars(profiles).items()
@@ -459,9 +453,7 @@ def _shaped(profiles: Profiles, shape: tuple[int, ...]) -> Profiles:
 
 
 def _measured(leg: Leg, rows: Results, status: NDArray[np.int8]) -> Profiles:
-    """Build the results from the rows of all profiles. The anchor is added, and the knockdown is
-    the difference from the depths in still water.
-    """
+    """Build the results from the rows of all profiles, and add the anchor."""
     pieces, clamps, ends, _ = rows
     above = leg.file.pieces[:-1]
     depth_top = np.full(pieces.shape[-1], np.nan)

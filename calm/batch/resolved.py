@@ -30,7 +30,7 @@ replace it.
 
 
 class InputHash:
-    """SHA-256 hash of an input: first its text, then the measured values that are added."""
+    """SHA-256 hash of an input, computed from its text and then from the measured values."""
 
     def __init__(self, text: str) -> None:
         self._digest = hashlib.sha256(text.encode("utf-8", "surrogateescape"))
@@ -60,7 +60,7 @@ def resolved_input(
     first, last = (str(one.astype("datetime64[s]")) for one in (time[0], time[-1]))
     known = {
         "calm": __version__,
-        "mooring": _plain(mooring.file),
+        "mooring": _json_data(mooring.file),
         "record": {"profiles": len(time), "from": first, "to": last},
         **options,
     }
@@ -70,28 +70,24 @@ def resolved_input(
 def with_input(text: str) -> Attributes:
     """Return the result attributes for the input `text`, with a placeholder for the hash.
 
-    The final hash includes measured values that have not been read yet. It has the length of the
-    placeholder, and replaces the placeholder later.
+    The hash replaces the placeholder after the measured values are read; both have the same length.
     """
     return {RESOLVED: text, **InputHash(text).attributes()}
 
 
-def _plain(value: Any) -> Any:
-    """Convert a data model to mappings, lists, text and numbers, without None and irrelevant
-    keys.
-    """
+def _json_data(value: Any) -> Any:
     if isinstance(value, BaseModel):
         return _known({name: getattr(value, name) for name in type(value).model_fields})
     if is_dataclass(value):
         return _known({each.name: getattr(value, each.name) for each in fields(value)})
     if isinstance(value, tuple | list):
-        return [_plain(member) for member in value]
+        return [_json_data(member) for member in value]
     return value
 
 
 def _known(members: Mapping[str, Any]) -> dict[str, Any]:
     return {
-        name: _plain(member)
+        name: _json_data(member)
         for name, member in members.items()
         if member is not None and name not in _NO_MATTER
     }

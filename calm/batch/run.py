@@ -1,4 +1,4 @@
-"""Solution of every profile of a record in blocks, and output as one file."""
+"""Solution of all profiles of a record in blocks, with one result file."""
 
 from collections.abc import Callable, Iterator
 from contextlib import closing

@@ -1,7 +1,7 @@
 """Solution of successive profiles with the search of `calm.solve`, and calculation of the results.
 
 A profile is solved to a tolerance of about a millionth of the depth, and without an audit. The
-results are extrapolated from solutions with segments of two lengths, one half of the other.
+results are extrapolated from two solutions, one of which has segments of half the length.
 """
 
 from math import atan2, inf, isfinite, nan, pi, sqrt
@@ -44,16 +44,19 @@ OF_ENDS = (
 )  # fmt: skip
 
 NO_CURRENT, LEVELS_COINCIDE, LIES_ON_SEABED, LACKS_ROOM = range(100, 104)
-"""Outcomes of a profile in addition to those in `calm.solve.solution`: no level with a value; two
-levels at one depth; a piece other than chain on the seabed, for a sub-surface line; too many
-segments for the work arrays.
+"""Outcomes of a profile in addition to the outcomes in `calm.solve.solution`. `NO_CURRENT`: no
+level has a value. `LEVELS_COINCIDE`: two levels have the same depth. `LIES_ON_SEABED`: a
+sub-surface line has a piece other than chain on the seabed. `LACKS_ROOM`: the work arrays are too
+small for the number of segments.
 """
 
 
 SLOPE_STEP = 0.001
-"""Change in a current component for its slopes [m/s]."""
+"""Change in a current component for the finite-difference slopes [m/s]."""
 NUDGE = 1e-4
-"""Change in the unknown of a line for its slopes, as a share of its range."""
+"""Change in the unknown of a line for the finite-difference slopes, as a fraction of the range of
+the unknown.
+"""
 
 
 class Results(NamedTuple):
@@ -187,7 +190,7 @@ def sea_of(
 
 
 def in_current(problem: LineProblem, on: ProfileLevels, sea: Sea) -> LineProblem:
-    """Return a copy of a problem with the water of the profile in the work arrays."""
+    """Return a copy of a problem in the water `sea` of the profile whose levels are in `on`."""
     given = problem.limits
     moving = False
     for k in range(len(sea.intervals) - 1):
@@ -289,8 +292,8 @@ def measure_slopes(
 
     For each component, the line is marched once in a slightly changed current, with the same
     segments and the same value of the unknown. By the implicit function theorem, the change in the
-    unknown is minus the change in the miss, divided by the slope of the miss. With several floats
-    at the surface, the search is repeated instead.
+    unknown is minus the change in the residual of the search, divided by the slope of this
+    residual. With several floats at the surface, the search is repeated instead.
     """
     found, row = problem.work.found, slopes[case]
     unknown = Unknown(
@@ -333,7 +336,7 @@ def measure_slopes(
 def depths_of(problem: LineProblem, referee: Referee, marched: bool, depths: Floats) -> None:
     """Write the depths of clamps and pieces to `depths` (m + p,).
 
-    The depths are those of the last march if `marched` is set, otherwise those of the extrapolated
+    If `marched` is set, the depths are taken from the last march, otherwise from the extrapolated
     shape.
     """
     record, work = problem.work.records[FINE], problem.work

@@ -30,8 +30,8 @@ STATUSES = (*(status.label for status in Status), "no-current", "levels-coincide
 """Names of the status numbers, beginning with 0."""
 
 IN_WEAK_CURRENT = frozenset({Status.SLACK.label, Status.ABOVE_SURFACE.label})
-"""Statuses of a line if the current is too weak to pull it tight or to keep it in the water. Such
-profiles do not contain the extremes of a response; profiles with other failures may.
+"""Statuses of a line in a current that is too weak to tighten the line or to keep it submerged.
+Such profiles do not contain the extremes of a response; profiles with other failures may.
 """
 
 _ENDINGS = {
@@ -78,10 +78,8 @@ def implausible(
     """Return whether each level (n, k) is implausible.
 
     A level is implausible if its speed exceeds `maximum_speed` [m/s], or if it is deeper than any
-    ocean.
-
-    An infinite speed counts as too fast. Levels above the surface and levels without a value are
-    ignored.
+    ocean. An infinite speed counts as too fast. Levels above the surface and levels without a value
+    are ignored.
     """
     with np.errstate(invalid="ignore", over="ignore"):
         squared = u * u + v * v + (0.0 if w is None else w * w)

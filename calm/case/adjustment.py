@@ -75,7 +75,7 @@ class Adjustment:
 
 
 def _buoyancy(text: str, file: MooringFile, parts: Parts) -> Adjustment:
-    """Change the net buoyancy of a rigid piece or clamped instrument [N], or of a cable [N/m]."""
+    """Vary the net buoyancy of a rigid piece or clamped instrument [N], or of a cable [N/m]."""
     component = parts[0].component
     for each in (part.component for part in parts):
         if isinstance(each, Anchor):
@@ -118,7 +118,7 @@ def _buoyancy(text: str, file: MooringFile, parts: Parts) -> Adjustment:
 
 
 def _length(text: str, file: MooringFile, parts: Parts) -> Adjustment:
-    """Change the unstretched length of a cable or chain [m]; clamps keep their distances from its
+    """Vary the unstretched length of a cable or chain [m]; clamps keep their distances from its
     upper end.
     """
     pieces = [part for part in parts if isinstance(part, Piece)]
@@ -143,9 +143,6 @@ def _length(text: str, file: MooringFile, parts: Parts) -> Adjustment:
 
 
 def _count(text: str, file: MooringFile, parts: Parts) -> Adjustment:
-    """Change the number of copies of an in-line component or assembly; each copy has its own
-    clamps.
-    """
     pieces = [part for part in parts if isinstance(part, Piece)]
     if len(pieces) < len(parts):
         raise LookupError("clamped instruments have no count; only in-line pieces do")
@@ -222,9 +219,9 @@ def parse_change(text: str, file: MooringFile) -> Adjustment:
 
     Parameters
     ----------
-    text : a label, a full stop, and ``buoyancy``, ``length`` or ``count``. The label is that of one
-        part, or the common beginning of numbered labels, such as ``glass`` for ``glass 1`` and
-        ``glass 2``. For a count, the label may also be that of an assembly
+    text : a label, a full stop, and ``buoyancy``, ``length`` or ``count``. The label names one
+        part, or is the common beginning of numbered labels, such as ``glass`` for ``glass 1`` and
+        ``glass 2``. For a count, the label may also name an assembly
     file : the mooring in which the label is looked up
 
     Raises

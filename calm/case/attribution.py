@@ -7,10 +7,10 @@ multiplied by λ_i. The share of drag i is its Aumann–Shapley value,
 
 All drags increase together from zero to full size. At every stage, each drag is attributed the
 change that its own increase causes. The shares add up to y(1 … 1) − y(0 … 0). Among the rules with
-this property, it is the only one that is independent of the division of the line into components
-and attributes zero to a drag without effect (Billera & Heath, Mathematics of Operations Research 7,
-1982). Removing one component at a time does not work: the differences do not add up, since drags
-interact.
+this property, the Aumann–Shapley value is the only rule that is independent of the division of the
+line into components and attributes zero to a drag without effect (Billera & Heath, Mathematics of
+Operations Research 7, 1982). Removing one component at a time does not work: the differences do not
+add up, since drags interact.
 
 If drags are proportional to the square of the speed, the stage s = t² is equivalent to a current
 multiplied by t.
@@ -45,7 +45,7 @@ _STEP = 2e-4
 of the solver.
 """
 SETTINGS = Settings(angle_step=radians(4.0), tolerance=1e-10)
-"""Coarse solver settings; they suffice because the contributions are scaled to the total in the
+"""Coarse solver settings, which suffice because the contributions are scaled to the total in the
 end.
 """
 
@@ -56,8 +56,8 @@ index of its clamp or -1.
 """
 
 Varied = Callable[[int, Line], Floats]
-"""Function that returns the three values of `Attribution` after the line of one numbered leg is
-replaced.
+"""Function of the number of a leg and a new line for this leg, which returns the three values of
+`Attribution`.
 """
 
 
@@ -139,11 +139,10 @@ def with_drag(line: Line, pieces: float | Floats, clamps: float | Floats | None 
 
 
 def _parts_with_drag(line: Line) -> list[tuple[int, int]]:
-    """List the parts with drag, down the line, each piece followed by its clamps."""
     pieces = np.flatnonzero((line.normal_drag > 0.0) | (line.tangential_drag > 0.0))
     clamps = np.flatnonzero(line.clamp_drag > 0.0)
     parts = [(int(p), -1) for p in pieces] + [(int(line.clamp_piece[m]), int(m)) for m in clamps]
-    return sorted(parts)
+    return sorted(parts)  # down the line, each piece before its clamps
 
 
 def _with_part(line: Line, piece: int, clamp: int, factor: float) -> Line:

@@ -366,8 +366,7 @@ def result_together(design: Design, found: NetSolution, still: Sequence[Solution
     )
 
 
-def _upside_down(result: LegResult) -> str:
-    """Return a warning if a leg with a free end is listed from its lower to its upper end."""
+def _reversed_order_warning(result: LegResult) -> str:
     leg, rows = result.leg, result.components
     top, bottom = float(rows.depth_top[0]), float(rows.depth_bottom[len(rows) - 2])
     if not (leg.top.free or leg.bottom.free) or top <= bottom:
@@ -418,13 +417,13 @@ class Result:
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """All warnings, beginning with those of the file."""
+        """Notices of the file, followed by warnings about the result."""
         if not self.several:
             return self.leg.warnings
         return (
             *self.file.notices,
             *(warning for leg in self.legs for warning in leg.warnings),
-            *(warning for leg in self.legs if (warning := _upside_down(leg))),
+            *(warning for leg in self.legs if (warning := _reversed_order_warning(leg))),
             *(
                 f"The anchors of legs {one.leg} and {other.leg} are at the same position but are "
                 "checked separately. If they are one anchor, join the legs at a node above it."
@@ -573,7 +572,7 @@ class Result:
     def plot(self, ax: Any = None) -> Any:
         """Draw a side view of the line on matplotlib axes, and return the axes.
 
-        Without `ax` the axes are those of a new figure. Raises UsageError if matplotlib is not
+        Without `ax`, the line is drawn in a new figure. Raises UsageError if matplotlib is not
         installed.
         """
         form = type(self).plot_form
@@ -600,12 +599,10 @@ class Result:
         return load_dataset(BytesIO(form(self)))
 
     def _repr_html_(self) -> str | None:
-        """HTML table of the line, for notebooks; None if the report package is not loaded."""
         form = type(self).notebook_form
         return None if form is None else form(self)
 
     def __repr__(self) -> str:
-        """Summary of the ends, and for several legs of the nodes, in SI units and degrees."""
         if self.several:
             lines = [f"{self.name}: {self.type} of {len(self.legs)} legs, {self.status}"]
             lines += [f"node {one.name}: depth {one.depth:.6g}" for one in self.nodes]
@@ -715,8 +712,7 @@ def load_in(
 ) -> list[Design]:
     """Read a file as `load` does, once for each environment.
 
-    If `environments` is None, these are the default environment and all environments that the file
-    names.
+    None stands for the default environment and all environments that the file names.
 
     Raises InputError with the mistakes of all environments.
     """

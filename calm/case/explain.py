@@ -229,7 +229,6 @@ def _shares(
 
 
 def _point(result: Result, place: Place) -> attribution.SolverPart:
-    """Return the indices of the leg, the piece and the clamp (-1 for none) of a part."""
     leg = leg_at(result, place)
     pieces, own = leg.file.pieces, replace(place, clamp=-1)
     index = next(piece.index for piece in pieces if piece.place == own)
@@ -283,7 +282,6 @@ def _with(design: Design, changed: Callable[[Line], Line], water: Water | None =
 
 
 def _with_buoyancy(line: Line, factor: float) -> Line:
-    """Return the line with the net buoyancy of all buoyant items multiplied by a factor."""
     floating, floats = line.floating, np.flatnonzero(~line.flexible & (line.buoyancy > 0.0))
     if floating is not None and len(floats):
         more = (factor - 1.0) * float(line.buoyancy[floats[0]])

@@ -232,7 +232,6 @@ class Leg:
             )
 
     def _refuse_grounded_pieces(self, solution: Solution) -> None:
-        """Raise NoEquilibrium if a sub-surface line has a piece other than chain on the seabed."""
         if solution.surface:
             return
         pieces = self.file.pieces
@@ -284,8 +283,8 @@ class Leg:
         return solve_mooring(line, self.water, self.settings)
 
     def still_counterpart(self, solution: Solution) -> Solution | None:
-        """Solution of the line in still water; None for a tow, or if the shape in still water is
-        not unique.
+        """Return the solution of the line in still water; None for a tow, or if the shape in still
+        water is not unique.
         """
         if self.towed:
             return None

@@ -217,7 +217,7 @@ class LegResult:
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """All warnings, beginning with those of the file."""
+        """Notices of the file, followed by warnings about the result."""
         return warnings_of(self)
 
     @cached_property

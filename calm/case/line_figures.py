@@ -26,8 +26,8 @@ class LineFigures:
     solution, still : solutions in the current and in still water; `still` is needed for the
         knockdown
     pieces : (n,) pieces of the file; needed for `index` and `reynolds` only
-    upper, lower : (n,) indices of the nodes at the ends of each piece: the end that the file lists
-        first, and the other end
+    upper, lower : (n,) indices of the nodes at the ends of each piece; the upper end is the end
+        that the file lists first
     top, bottom : (n, 3) positions of these nodes: east, north, up [m]
     """
 

@@ -16,7 +16,7 @@ from calm.errors import NoEquilibrium
 from calm.physics.line import Line, Water, once_per_input
 
 MOST = 256
-"""Number of outcomes that are kept; older ones are discarded."""
+"""Maximum number of stored outcomes; older outcomes are discarded."""
 
 Key = tuple[str | bytes, ...]
 
@@ -97,7 +97,6 @@ def _names(record: type) -> tuple[str, ...]:
 
 
 def _key(solver: Callable[..., object], given: tuple[object, ...], named: object) -> Key:
-    """Return the key of an outcome: the name of the solver, and its serialised inputs."""
     inputs = (_of_arrays(one) if isinstance(one, Line | Water) else _written(one) for one in given)
     return solver.__module__, solver.__qualname__, *inputs, _written(named)
 

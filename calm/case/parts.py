@@ -132,19 +132,16 @@ class Origin:
             inner = value if isinstance(value, Mapping) and not at else {None: value}
             for key, each in inner.items():
                 where = (*at, name) if key is None else (*at, name, key)
-                draft = draft.put_at(where, _written(each))
+                draft = draft.put_at(where, _numbers_as_text(each))
         named = None if isinstance(environment, Mapping) else environment
         return replace(self, text=draft.text, environment=named or self.environment)
 
 
-def _written(value: Any) -> Any:
-    """Convert a value, with all numbers inside lists and mappings, to the text form of a mooring
-    file.
-    """
+def _numbers_as_text(value: Any) -> Any:
     if isinstance(value, Mapping):
-        return {key: _written(each) for key, each in value.items()}
+        return {key: _numbers_as_text(each) for key, each in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_written(each) for each in value]
+        return [_numbers_as_text(each) for each in value]
     if isinstance(value, bool):
         return str(value).lower()
     return str(value) if isinstance(value, Real) else value

@@ -50,7 +50,8 @@ class ProfilerTravel:
 
 
 def profilers_of(leg: Leg) -> tuple[ProfilerTravel, ...]:
-    """Solve a line with each profiler in turn along its path, and the others at their upper stops.
+    """Solve a line with one profiler at a time along its path, and the other profilers at their
+    upper stops.
 
     Raises NoEquilibrium if there is no equilibrium with a profiler at one of its `PLACES`
     positions.

@@ -54,12 +54,11 @@ class Columnar:
 
     if TYPE_CHECKING:
 
-        def __getattr__(self, name: str) -> Any:
-            """Return a column by its name."""
+        def __getattr__(self, name: str) -> Any: ...
 
     @classmethod
     def names(cls) -> list[str]:
-        """Names of the columns, in table order."""
+        """Return the names of the columns, in table order."""
         raise NotImplementedError
 
     def __getstate__(self) -> dict[str, Any]:
@@ -73,7 +72,8 @@ class Columnar:
 class ColumnTable(Columnar, Generic[Row]):
     """Table stored by column.
 
-    A column is an array of numbers or a list. The columns have the names of the fields of `record`.
+    A column is an array of numbers or a list. `table[row]` is a row by number or label. The columns
+    have the names of the fields of `record`.
     """
 
     record: ClassVar[type[Any]]
@@ -109,7 +109,7 @@ class ColumnTable(Columnar, Generic[Row]):
 
     @classmethod
     def joined(cls, tables: Sequence[Self]) -> Self:
-        """Return the rows of several tables as one table."""
+        """Join the rows of several tables in one table."""
         columns = {name: [getattr(table, name) for table in tables] for name in cls.names()}
         whole = {
             name: [*chain(*parts)] if isinstance(parts[0], list) else np.concatenate(parts)
@@ -125,10 +125,6 @@ class ColumnTable(Columnar, Generic[Row]):
         return len(self.label)
 
     def __getitem__(self, row: int | str) -> Row:
-        """Return a row by number or label, as a record with the names of the columns.
-
-        Raises KeyError, with the most similar label, if no row has the label.
-        """
         if isinstance(row, int):
             return self._records[row]
         if row not in self.label:
@@ -138,9 +134,9 @@ class ColumnTable(Columnar, Generic[Row]):
     def __iter__(self) -> Iterator[Row]:
         return iter(self._records)
 
+    # cached for the rules of the design check
     @cached_property
     def _records(self) -> tuple[Row, ...]:
-        """Rows as records, cached for the rules of the design check."""
         columns = [getattr(self, name) for name in self.names()]
         # converting whole columns to plain numbers is faster than element by element
         plain = [column if isinstance(column, list) else column.tolist() for column in columns]
@@ -178,7 +174,6 @@ class ColumnTable(Columnar, Generic[Row]):
 
 
 def _dataset(values: Mapping[str, Any], columns: Sequence[ResultColumn], along: str) -> Dataset:
-    """Convert columns of equal length to a dataset with one dimension."""
     from xarray import Dataset
 
     return Dataset(
@@ -773,9 +768,7 @@ NET_ENDS: Mapping[str, type[Any]] = {"anchors": EndLoad, "held": EndLoad, "nodes
 
 
 def _free(line: Any) -> float:
-    """Return 1 for a line with a free upper end, NaN for a leg whose upper end is held or
-    joined.
-    """
+    """Return 1 for a free upper end, and NaN for an upper end that is held or joined."""
     legs = line.file.legs
     return 1.0 if not legs or legs[0].top.free else nan
 
@@ -876,8 +869,8 @@ def rows_by_place(result: WithClamps) -> dict[Place, ComponentRow | ClampRow]:
 def item_numbers(*results: WithClamps) -> dict[str, str]:
     """Return the item number of each piece and clamp, by label; all documents use these numbers.
 
-    Pieces are numbered from 1 through all `results`, which may be the legs of a net. The number of
-    a clamp is that of its piece, followed by a letter.
+    Pieces are numbered from 1 through all `results`, which may be the legs of a net. A clamp has
+    the number of its piece, followed by a letter.
     """
     found: dict[str, str] = {}
     rows = (row for result in results for row in rows_down(result))
@@ -891,7 +884,7 @@ def item_numbers(*results: WithClamps) -> dict[str, str]:
 def run_of(numbers: Sequence[str]) -> str:
     """Format the numbers of items that share a row, such as `19–26` or `5a–5c, 6`.
 
-    Clamp numbers are omitted if the first number is that of a piece.
+    Clamp numbers are omitted if the first number refers to a piece.
     """
     pieces = sorted(int(one) for one in numbers if one.isdigit())
     clamps = [] if numbers[0].isdigit() else [one for one in numbers if not one.isdigit()]

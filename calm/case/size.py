@@ -21,7 +21,7 @@ MET, MET_ALREADY, NOT_MET = "met", "met-already", "not-met"
 _NOTHING = 1e-6
 """Relative change of the target quantity that is treated as no change."""
 SOLVES = 60.0
-"""Approximate number of equilibria per answer; each tried value takes three."""
+"""Approximate number of equilibria per answer; each value tried takes three equilibria."""
 
 _EXACT = 1e-7
 """Error at which an `=` target counts as met, as a fraction of the limit or of the initial distance
@@ -175,7 +175,9 @@ def size(
         small=_EXACT * max(abs(wanted.limit), abs(first)),
     )
     found = search.find(adjustment.now)
-    message, advice = ("", "") if found is not None else _why_not(search, wanted, adjustment, at)
+    message, advice = (
+        ("", "") if found is not None else _reason_and_advice(search, wanted, adjustment, at)
+    )
     status = NOT_MET if found is None else MET_ALREADY if found == adjustment.now else MET
     return Sizing(
         target=wanted,
@@ -228,10 +230,9 @@ def _understood(
     return wanted, adjustment, limits
 
 
-def _why_not(
+def _reason_and_advice(
     search: LeastChange, target: Target, change: Adjustment, at: Callable[[float], Trial]
 ) -> tuple[str, str]:
-    """Return the reason why no value meets the target, and advice."""
     least = search.least
     span = f"from {with_unit(search.low, change.unit)} to {with_unit(search.high, change.unit)}"
     if least is None:

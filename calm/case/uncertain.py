@@ -1,7 +1,7 @@
 """Uncertainty of a mooring's results, from solutions for many random draws of its inputs.
 
-Every sample is solved with the segments of the original mooring, or from scratch if this finds no
-equilibrium of the same kind. It must pass every check of a solution.
+Every sample is solved with the segments of the original mooring, or from scratch if this search
+finds no equilibrium of the same kind. Each sample must pass every check of a solution.
 """
 
 from __future__ import annotations

@@ -159,7 +159,7 @@ def unknown_stretch(component: Component, tension: float) -> list[float] | None:
 
 
 def _published(strains: list[float]) -> str:
-    """Describe the stretch for the published stiffnesses, given the strains in decreasing order."""
+    """Describe the stretch for the published stiffnesses; `strains` are in decreasing order."""
     if not strains:
         return "no stiffness of such ropes has been published."
     if len(strains) == 1:
@@ -198,7 +198,6 @@ def _beyond_the_table(result: _Measured, solution: Solution) -> Iterator[str]:
 
 
 def _fast_flow(result: _Measured, _: Solution) -> Iterator[str]:
-    """Warn about fast flow past a tow, because the design check does not cover tows."""
     fast = fast_pieces(result)
     if fast:
         yield f"{fast_text(fast)} Check the coefficient."
@@ -320,7 +319,6 @@ def _other_equilibrium(_: _Measured, solution: Solution) -> Iterator[str]:
 
 
 def _hull_unknown(result: _Measured, solution: Solution) -> Iterator[str]:
-    """Warn if the draft of a surface float is unknown, and state the assumption."""
     riding, immersed = solution.riding, result.file.solver.buoy_drag == "immersed"
     if solution.surface and immersed and (riding is None or np.isnan(riding.draft)):
         afloat = [result.components.label[piece] for piece in solution.afloat]
@@ -417,6 +415,6 @@ _OF_A_MOORING: tuple[Callable[[_Measured, Solution], Iterator[str]], ...] = (
 )  # fmt: skip
 _OF_A_TOW: tuple[Callable[[_Measured, Solution], Iterator[str]], ...] = (
     _below_the_sea,
-    _fast_flow,
+    _fast_flow,  # the design check reports fast flow, but does not cover tows
     _strums_along_the_flow,
 )

@@ -140,13 +140,12 @@ def ended(counts: Mapping[str, int], output: Path) -> ExitCode:
     if solved < done:
         narrate(
             f"{output}: {grouped(done - solved)} of {grouped(done)} profiles are NaN: "
-            f"{', '.join(_kinds(counts))}"
+            f"{', '.join(_failure_counts(counts))}"
         )
     return ExitCode.DONE if solved else ExitCode.NO_EQUILIBRIUM
 
 
-def _kinds(counts: Mapping[str, int]) -> Iterator[str]:
-    """Yield, for each category of unsolved profiles, their number and their statuses."""
+def _failure_counts(counts: Mapping[str, int]) -> Iterator[str]:
     from calm.batch.statuses import Ending, ending_of, endings
 
     for ending, count in endings(counts).items():

@@ -46,14 +46,11 @@ def build(
     # the builder needs a terminal, or the driver in TEXTUAL_DRIVER
     terminal = all(stream is not None and stream.isatty() for stream in (sys.stdin, sys.stderr))
     if not (terminal or os.environ.get("TEXTUAL_DRIVER")):
-        raise UsageError(_REDIRECTED if _is_redirected() else _NO_TERMINAL)
+        raise UsageError(_REDIRECTED if _stdin_and_stdout_are_terminals() else _NO_TERMINAL)
     from calm.tui.start import build
 
     return ExitCode(build(file, environment, catalog or []))
 
 
-def _is_redirected() -> bool:
-    """Return whether both standard input and output are terminals, so that only standard error is
-    redirected.
-    """
+def _stdin_and_stdout_are_terminals() -> bool:
     return all(stream is not None and stream.isatty() for stream in (sys.stdin, sys.stdout))

@@ -156,7 +156,6 @@ _CABLE = ("weight", "k", "diameter", "cd", "speed", "density")
 
 
 def _drag_over_weight(cable: dict[str, float]) -> float:
-    """Return K as given, or compute it from the options for the cable and the current."""
     from calm.physics.seawater import REFERENCE_DENSITY
 
     parts = ("diameter", "cd", "speed")

@@ -156,7 +156,7 @@ def _read(
 ) -> tuple[list[DesignFile], list[Path], Design | None]:
     """Read the designs and the earlier design, and separate the files that are tows.
 
-    `ready` is called while other processes read. Raises InputError with the mistakes of all files.
+    `ready` is called while other processes read.
     """
     from calm.case import load
     from calm.files.mooring_file import refuse_tow
@@ -182,7 +182,6 @@ def _read(
 
 
 def _check_report(folder: Path, json: Path | None, given: Sequence[Path]) -> None:
-    """Reject a report that cannot be written, before anything is solved."""
     from calm.report.folder import REPORT_FILES, check_folder
     from calm.report.provenance import moment
 
@@ -200,7 +199,6 @@ def _check_report(folder: Path, json: Path | None, given: Sequence[Path]) -> Non
 def _check_missing(
     missing: bool, output: Path | None, files: Sequence[Path], other: Sequence[Path | None]
 ) -> None:
-    """Reject the output file of --missing if it cannot be written, before anything is solved."""
     if output is not None and not missing:
         raise UsageError(
             "-o can only be used with --missing; to write the findings, use --json or --report"
@@ -246,8 +244,7 @@ def _answer(
 ) -> None:
     """Print the findings, and write the report if requested.
 
-    The PDF is typeset at the same time, because typst releases the interpreter lock. `names` are
-    the names of separate PDF files for each mooring, if requested.
+    `names` are the names of the separate PDF files of the moorings, if requested.
     """
     from concurrent.futures import ThreadPoolExecutor
 
@@ -266,6 +263,7 @@ def _answer(
 
     report = check_report([each.section for each in drawings])
     with ThreadPoolExecutor(1) as pool:
+        # typst releases the interpreter lock, so the PDF is typeset at the same time
         pdf = pool.submit(printed, report, page_size, leaves=[each.pdf for each in drawings])
         outputs.write_answer(document, check_part(assessments))
         texts = {

@@ -164,19 +164,17 @@ def _plan(deck: Deck) -> dict[str, Any]:
 
 
 def _missing_characters(deck: Deck) -> tuple[str, ...]:
-    """Describe the characters of the file that the font of the sheets lacks, with their places."""
     from calm.drawing.typesetting import lacking
 
-    signs = lacking(text for text, _ in _texts(deck))
+    signs = lacking(text for text, _ in _printed_texts(deck))
     if not signs:
         return ()
-    where = dict.fromkeys(place for text, place in _texts(deck) if lacking([text]))
+    where = dict.fromkeys(place for text, place in _printed_texts(deck) if lacking([text]))
     named = ", ".join(f"{sign} (U+{ord(sign):04X})" for sign in signs)
     return (f"The font of the sheets lacks {named}; � is printed instead in {', '.join(where)}",)
 
 
-def _texts(deck: Deck) -> Iterator[tuple[str, str]]:
-    """Yield the texts of the file that appear on the sheets, each with the name of its place."""
+def _printed_texts(deck: Deck) -> Iterator[tuple[str, str]]:
     from calm.report.provenance import title_pairs
 
     for name, text in title_pairs(deck.file):
@@ -192,11 +190,6 @@ def _texts(deck: Deck) -> Iterator[tuple[str, str]]:
 
 
 def _folders(designs: Sequence[reading.DesignFile], output: Path) -> list[Path]:
-    """Return the folder for the sheets of each mooring.
-
-    Raises UsageError if two moorings have the same folder, or if a folder has the path of an input
-    file.
-    """
     if len(designs) == 1:
         return [output]
     return [output / name for name in reading.names_of_files(designs, output)]

@@ -53,22 +53,21 @@ def docs(*words: str, open_: Annotated[bool, Parameter(name="--open")] = False) 
         raise UsageError(str(error)) from None
     texts, built = _pages(manual, ".md"), _pages(manual / SITE, ".html")
     page = " ".join(words) if words else "index"
-    name = _named(page, texts | built) or _named(page.replace(" ", "-"), texts | built)
+    name = _find_page(page, texts | built) or _find_page(page.replace(" ", "-"), texts | built)
     if name is None:
-        _list(page, texts, built)
+        _list_pages(page, texts, built)
     elif open_:
-        _open(name, texts, built)
+        _open_in_browser(name, texts, built)
     else:
         show(f"{texts.get(name) or built[name]}\n")
     return ExitCode.DONE
 
 
-def _list(words: str, texts: dict[str, Path], built: dict[str, Path]) -> None:
+def _list_pages(words: str, texts: dict[str, Path], built: dict[str, Path]) -> None:
     """List the pages that contain most of the words, with name, title and a line of text.
 
-    Pages with more of the words in their headings come first, then pages in which
-    the words are more frequent. Raises UsageError if no page contains any of the
-    words.
+    Pages with more of the words in their headings come first, then pages in which the words are
+    more frequent.
     """
     from calm.errors import unknown
     from calm.whole_file import read_text
@@ -126,11 +125,7 @@ def _pages(folder: Path, suffix: str) -> dict[str, Path]:
     }
 
 
-def _named(page: str, pages: dict[str, Path]) -> str | None:
-    """Return the full name of the page with a given name, or None.
-
-    Raises UsageError if several pages have the name.
-    """
+def _find_page(page: str, pages: dict[str, Path]) -> str | None:
     wanted = page.strip("/").removesuffix(".md").removesuffix(".html")
     for exact in (wanted, f"{wanted}/index"):
         if exact in pages:
@@ -141,11 +136,7 @@ def _named(page: str, pages: dict[str, Path]) -> str | None:
     return found[0] if found else None
 
 
-def _open(name: str, texts: dict[str, Path], built: dict[str, Path]) -> None:
-    """Open a page of the built manual in a browser.
-
-    Raises UsageError if the manual was not built as a site, or if there is no browser.
-    """
+def _open_in_browser(name: str, texts: dict[str, Path], built: dict[str, Path]) -> None:
     import webbrowser
 
     if name not in built:

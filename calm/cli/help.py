@@ -58,12 +58,9 @@ def metavar(option: str) -> str | None:
 
 
 class HelpAtWidth:
-    """Formatter of `--help`, which is as wide as the terminal and names the value of each
-    option.
-    """
+    """Formatter of `--help` that fills the terminal width and names the value of each option."""
 
     def __call__(self, console: Console, options: ConsoleOptions, panel: HelpPanel) -> None:
-        """Print a panel of options, with their texts wrapped to its width."""
         from cyclopts.help import DefaultFormatter
         from rich.text import Text
 

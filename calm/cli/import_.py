@@ -170,10 +170,6 @@ def _is_folder(files: tuple[Path, ...], output: Path) -> bool:
 
 
 def _targets(files: tuple[Path, ...], output: Path) -> list[Path]:
-    """Return the path of the mooring file for each input file.
-
-    Raises UsageError if two files have the same path, or if one would overwrite an input file.
-    """
     from calm.report.folder import check_destination
 
     if not _is_folder(files, output):

@@ -39,8 +39,8 @@ class Drawing(NamedTuple):
 class DrawnSection(NamedTuple):
     """Section of the report for one mooring.
 
-    It has the row of the summary, the HTML and PDF pages and, if requested, a separate PDF with all
-    pages of the mooring.
+    The section has the row of the summary, the HTML and PDF pages and, if requested, a separate PDF
+    with all pages of the mooring.
     """
 
     section: CheckedSection
@@ -50,7 +50,7 @@ class DrawnSection(NamedTuple):
 
 
 class CheckedMooring(NamedTuple):
-    """Assessment of a mooring, and its section of the report; None without a report."""
+    """Assessment of a mooring, and its section of the report (None without a report)."""
 
     assessment: Assessment
     drawn: DrawnSection | None
@@ -84,7 +84,9 @@ def judge(
     drawn: Drawing | None,
     draws: tuple[int, int] | None,
 ) -> list[CheckedMooring]:
-    """Check designs; acceptances must be valid on the day of the report, by default today.
+    """Check designs.
+
+    Accepted findings must be valid on the day of the report, which is today by default.
 
     With many moorings, each process solves, checks and draws whole moorings. With few moorings,
     their environments are distributed over the processes.
@@ -152,8 +154,8 @@ def _concluded(
 ) -> CheckedMooring:
     """Assess a mooring that is solved in its environments, and draw section `number` of the report.
 
-    `draws` are the number of samples and the seed for the probabilities, or None. `shared`
-    distributes blocks of samples over processes.
+    `draws` are the number of samples and the seed. `shared` distributes blocks of samples over
+    processes.
     """
     from calm.checks import assess, design_check
 
@@ -166,15 +168,13 @@ def _concluded(
 
 
 def _solved_cases(task: tuple[str, Design, date]) -> list[MooringInEnvironment]:
-    """Solve a design in one environment and apply the rules to each leg; an internal error of CALM
-    becomes a failed case, so that the other cases continue.
-    """
     from calm.checks.design_check import environments_checked, failed_environment
 
     name, mooring, day = task
     try:
         return environments_checked(mooring, name, day)
     except Exception as error:
+        # an internal error becomes a failed case, so that the other cases continue
         if os.environ.get("CALM_DEBUG") == "1":
             raise
         return [failed_environment(mooring, name, internal_failure(error))]

@@ -98,7 +98,7 @@ app = App(
     result_action="return_value",
 )
 _SYNONYMS = {"run": ("tow", "solve")}
-"""Other words for commands; if one of them is typed, the message suggests the command."""
+"""Synonyms of commands; the message for a synonym suggests the command."""
 
 _GROUPS: dict[str, tuple[tuple[Any, str], ...]] = {
     "Design": (
@@ -126,8 +126,8 @@ _GROUPS: dict[str, tuple[tuple[Any, str], ...]] = {
         (completion, "SHELL"),
     ),
 }
-"""Commands by purpose, in the order of `--help`; each with its usage, unless that is generated from
-its options.
+"""Commands by purpose, in the order of `--help`, each with its usage. An empty usage is generated
+from the options.
 """
 
 for _number, (_name, _commands) in enumerate(_GROUPS.items()):
@@ -151,7 +151,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     Parameters
     ----------
-    arguments : the words after ``calm``; by default those of the process
+    arguments : the words after ``calm``; by default the arguments of the process
 
     Returns
     -------

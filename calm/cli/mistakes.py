@@ -29,8 +29,8 @@ def complaint(error: CycloptsError) -> str:
         extra = " ".join(error.unused_tokens or ())
         return f"unexpected argument: {extra}; see `{command} --help`"
     if type(error) is MissingArgumentError and error.argument is not None:
-        return _missing(command, error, error.argument)
-    if isinstance(error, UnknownOptionError) and (message := _about_option(error)):
+        return _missing_message(command, error, error.argument)
+    if isinstance(error, UnknownOptionError) and (message := _suggest_longer_options(error)):
         return f"`{command}`: {message}"
     if isinstance(error, CoercionError) and error.token is not None:
         path = error.token.value
@@ -46,10 +46,7 @@ def complaint(error: CycloptsError) -> str:
     return str(error)
 
 
-def _about_option(error: UnknownOptionError) -> str:
-    """Suggest options that begin with the typed text, such as --environment for --env; return an
-    empty text if there are none.
-    """
+def _suggest_longer_options(error: UnknownOptionError) -> str:
     word = error.token.keyword or error.token.value
     if word == "-":
         return "CALM does not read standard input; name a file"
@@ -58,10 +55,7 @@ def _about_option(error: UnknownOptionError) -> str:
     return f"unknown option {word}; did you mean {' or '.join(longer)}?" if longer else ""
 
 
-def _missing(command: str, error: MissingArgumentError, argument: Argument) -> str:
-    """Return the message that names the missing arguments, or the option that was typed without its
-    value.
-    """
+def _missing_message(command: str, error: MissingArgumentError, argument: Argument) -> str:
     if error.keyword is not None or argument.tokens:
         return f"`{command}`: {error.keyword or argument.name} needs a value: {_form(argument)}"
     typed = [word.partition("=")[0] for word in error.root_input_tokens or () if word[:1] == "-"]
@@ -84,13 +78,10 @@ def _form(argument: Argument, app: App | None = None) -> str:
         short = min(argument.names, key=len)
         return f"{short} {metavar(argument.name) or 'PATH'}"
     place = argument.index or 0
-    words = _positionals(app)
+    words = _usage_positionals(app)
     return words[place] if place < len(words) else argument.name
 
 
-def _positionals(app: App | None) -> Sequence[str]:
-    """Return the positional arguments in the usage line of a command; empty without a usage
-    line.
-    """
+def _usage_positionals(app: App | None) -> Sequence[str]:
     usage = "" if app is None or not app.usage else app.usage
     return [word for word in usage.partition("[OPTIONS]")[2].split() if word[0] != "["]

@@ -62,7 +62,8 @@ def option(name: str) -> str:
 
 
 def show_units(given: str | None, files: Iterable[MooringFile] = ()) -> None:
-    """Set the units of tables and reports to those in `given`, or else to those of the files.
+    """Set the units of tables and reports to the units in `given` or, without `given`, to the units
+    of the files.
 
     If the files have different units, SI is used. Raises UsageError if the text contains an unknown
     dimension or unit.

@@ -129,7 +129,7 @@ def check_suffix(path: Path, allowed: Sequence[str]) -> None:
 
 
 def _abandon_output() -> None:
-    """Discard buffered output, which would fail again when the interpreter exits."""
+    # writing the buffered output would fail again when the interpreter exits
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
@@ -215,19 +215,15 @@ class Outputs:
     suffixes: tuple[str, ...] = SUFFIXES
 
     def apiece(self, path: Path) -> list[Path]:
-        """Return the path of an output for each input file. With several input files, the path
-        includes the name of each.
+        """Return the path of an output for each input file. With several input files, each path
+        includes the name of its input file.
         """
         if len(self.files) == 1:
             return [path]
         return [path.with_stem(f"{path.stem}-{file.stem}") for file in self.files]
 
     def __post_init__(self) -> None:
-        """Reject invalid outputs before anything is solved.
-
-        Raises UsageError if a path cannot be written, is used twice, is the path of a mooring file,
-        looks like an option, or has an unknown suffix.
-        """
+        # invalid outputs are rejected before anything is solved
         from calm.report.folder import check_destination
         from calm.report.provenance import moment
 

@@ -52,9 +52,6 @@ class ProgressTeller:
         narrate(text)
 
     def __call__(self, progress: Progress) -> None:
-        """Show the progress of a batch, with a bar on a terminal, or in separate lines
-        elsewhere.
-        """
         head = f"{bar(progress)} " if self._terminal else ""
         self.tell(lambda seconds: head + state(progress, seconds))
 
@@ -138,8 +135,8 @@ def mapped(
     function : a module-level function, which another process can import
     workers : number of processes; None for one per core
     what : noun for the tasks, in the plural
-    meanwhile : function called in this process while other processes work; it is not called if
-        there are none
+    meanwhile : function called in this process while other processes work, unless there are
+        none
     """
     workers = min(workers or os.cpu_count() or 1, len(tasks))
     if workers < 2 or len(tasks) <= FEW:
@@ -147,7 +144,7 @@ def mapped(
     from concurrent.futures import ProcessPoolExecutor
     from multiprocessing import active_children
 
-    pool = ProcessPoolExecutor(workers, initializer=_as_parent, initargs=(shown_units(),))
+    pool = ProcessPoolExecutor(workers, initializer=_initialise_worker, initargs=(shown_units(),))
     try:
         doing = pool.map(function, tasks)
         if meanwhile is not None:
@@ -167,15 +164,14 @@ def begun(
 ) -> Callable[[], _Done]:
     """Start a computation in another process, and return a function that waits for its result.
 
-    The function must be a module-level function, which another process can
-    import. On a machine with one core, it runs in this process when the result is
-    requested.
+    The function must be a module-level function, which another process can import. On a machine
+    with one core, the function runs in this process when the result is requested.
     """
     if (os.cpu_count() or 1) < 2:
         return partial(function, *given, **named)
     from concurrent.futures import ProcessPoolExecutor
 
-    pool = ProcessPoolExecutor(1, initializer=_as_parent, initargs=(shown_units(),))
+    pool = ProcessPoolExecutor(1, initializer=_initialise_worker, initargs=(shown_units(),))
     made = pool.submit(function, *given, **named)
 
     def done() -> _Done:
@@ -185,7 +181,6 @@ def begun(
     return done
 
 
-def _as_parent(shown: Mapping[str, str]) -> None:
-    """Adopt the display units of the parent process, and ignore interrupts."""
+def _initialise_worker(shown: Mapping[str, str]) -> None:
     show_in(shown)
     signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -94,10 +94,10 @@ def read_designs(
         named = ", ".join(map(str, tows))
         raise UsageError(f"{command} is only for moorings; these are tows: {named}")
     for its in by_path.values():
-        _refuse_one_name(its)
+        _refuse_equal_names(its)
     called = _unique_names({path: its[0].file.name for path, its in by_path.items()})
     designs = [
-        DesignFile(path, called[path], _with_equal_cuts(its)) for path, its in by_path.items()
+        DesignFile(path, called[path], _with_cuts_of_first(its)) for path, its in by_path.items()
     ]
     return designs, tows
 
@@ -120,9 +120,6 @@ def names_of_files(
 
 
 def _unique_names(names: dict[Path, str]) -> dict[Path, str]:
-    """Make names unique: a name that occurs in several files is followed by the path of its
-    file.
-    """
     while True:
         count = Counter(names.values())
         if max(count.values()) == 1:
@@ -132,16 +129,12 @@ def _unique_names(names: dict[Path, str]) -> dict[Path, str]:
         }
 
 
-def _with_equal_cuts(moorings: Sequence[Design]) -> tuple[Design, ...]:
-    """Use the same cut lengths in every environment, namely those that fit in the first
-    environment.
-
-    The designs share a cache, so results that do not depend on the environment, such as the line in
-    still water, are computed once.
-    """
+def _with_cuts_of_first(moorings: Sequence[Design]) -> tuple[Design, ...]:
     from calm.case import Design
     from calm.case.memory import Memory
 
+    # results that do not depend on the environment, such as the line in still water, are computed
+    # once
     memory = Memory()
     first, *others = (Design(each.file, memory=memory) for each in moorings)
     try:
@@ -162,10 +155,10 @@ def _load(
         return error.problems
 
 
-def _refuse_one_name(moorings: Sequence[Design]) -> None:
-    """Reject environments with the same name, because results could not distinguish them."""
+def _refuse_equal_names(moorings: Sequence[Design]) -> None:
     from calm.checks.finding import HANDLING_LABEL, OWN
 
+    # results could not distinguish environments with the same name
     names = Counter(mooring.file.environment.name or OWN for mooring in moorings)
     names[HANDLING_LABEL] += 1  # this name heads a column of its own
     for name, count in names.items():

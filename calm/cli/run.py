@@ -19,8 +19,7 @@ if TYPE_CHECKING:
     from calm.case import Design
 
 
-def _dash(_: object, tokens: Sequence[Token]) -> str:
-    """Return the value of `--json`, which must be ``-``; raise UsageError otherwise."""
+def _require_dash(_: object, tokens: Sequence[Token]) -> str:
     if (value := tokens[0].value) != "-":
         raise UsageError(
             f"--json {value}: the value must be -, which prints the result; use -o FILE.json to "
@@ -29,7 +28,9 @@ def _dash(_: object, tokens: Sequence[Token]) -> str:
     return value
 
 
-PrintedJson = Annotated[Literal["-"] | None, Parameter(allow_leading_hyphen=True, converter=_dash)]
+PrintedJson = Annotated[
+    Literal["-"] | None, Parameter(allow_leading_hyphen=True, converter=_require_dash)
+]
 
 
 def run(

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class FileOutcome:
-    """Outcome for one file: a result, or the reason why there is none."""
+    """Outcome for one file: a result, or the reason why the file has no result."""
 
     file: Path
     name: str
@@ -116,7 +116,7 @@ def solve_files(
     draws : number of samples and seed for the uncertainty; None without uncertainty
     verbose : whether to report solver statistics
     """
-    drawn_often = None if draws is None else _to_draw_often(*draws)
+    drawn_often = None if draws is None else _uncertainty_solver(*draws)
     outcomes = []
     for file, line in zip(files, lines, strict=True):
         if (card := line.file.environment.current.card) is not None:
@@ -147,23 +147,18 @@ def _explained(result: Result) -> Explanation:
     return explain(result)
 
 
-def _to_draw_often(samples: int, seed: int) -> Callable[[Result], Uncertain]:
-    """Return a function that computes the uncertainty of a result from many samples.
-
-    Another process starts to generate the random numbers at once, because loading scipy takes as
-    long as loading the compiled march.
-    """
+def _uncertainty_solver(samples: int, seed: int) -> Callable[[Result], Uncertain]:
     from calm.case.draws import normals_of
     from calm.case.uncertain import uncertain
     from calm.cli.progress import begun, mapped
 
+    # loading scipy takes as long as loading the compiled march, so another process starts at once
     normals = begun(normals_of, samples, seed)
     solved = partial(mapped, workers=None, what="blocks of samples solved")
     return lambda result: uncertain(result, samples, seed, solved, normals)
 
 
 def _schematic(line: Design, result: Result | None) -> tuple[TerminalSchematic, ...]:
-    """Draw the legs of a design with characters that the standard output can show."""
     from calm.drawing.schematic.in_terminal import TerminalSchematic, can_carry
 
     plain = not can_carry(getattr(sys.stdout, "encoding", None))

@@ -49,7 +49,7 @@ def verify(
         if words:
             raise UsageError("--field cannot be combined with search words")
         return verify_field(outputs)
-    chosen = _chosen(words or [])
+    chosen = _chosen_sources(words or [])
     cases = [case for source in chosen for case in source.cases]
     expect_many(len(cases))
     outcomes = iter([case.check() for case in progress(cases, "figures")])
@@ -59,11 +59,7 @@ def verify(
     return ExitCode.FINDING if document["out"] else ExitCode.DONE
 
 
-def _chosen(words: Sequence[str]) -> list[Source]:
-    """Select the sources and cases whose names contain every word.
-
-    Raises UsageError if no case contains all words.
-    """
+def _chosen_sources(words: Sequence[str]) -> list[Source]:
     from calm.verification import SOURCES
 
     chosen = [source for source in (each.having(words) for each in SOURCES) if source.cases]
@@ -75,8 +71,8 @@ def _chosen(words: Sequence[str]) -> list[Source]:
 
 WITHHELD = tuple(f"Aquadopp {height}" for height in (526, 426, 326, 226, 126))
 MEAN_RATIO, MAX_RATIO, IN_BAND = 0.55, 0.75, (0.88, 0.99)
-"""Limits of the rms error relative to that of interpolation (mean, maximum), and of the fraction of
-values within their 95 % bands.
+"""Limits for the ratio of the rms error to the rms error of interpolation (mean and maximum over
+the sensors), and for the fraction of values within their 95 % bands (smallest and largest).
 """
 
 

@@ -119,8 +119,6 @@ def _sea_states(
 ) -> tuple[list[SeaState] | None, float | None, float]:
     """Read the sea states, their direction [degrees] and duration [s]. States and direction are
     None if not specified.
-
-    Raises UsageError with all mistakes in the options.
     """
     from calm.errors import nearest
     from calm.records import sea_states

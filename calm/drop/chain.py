@@ -18,11 +18,11 @@ from calm.physics.reynolds import DragCurve
 from calm.physics.track import head_count
 
 MIN_BAR_SHARE = 0.12
-"""Smallest fraction of all bars for each cable or chain that is not short, since any of these may
-be the part that comes to lie on the seabed.
+"""Smallest fraction of all bars for each cable or chain that is not short, since any such cable or
+chain may come to lie on the seabed.
 """
 SHORT_SHARE = 0.02
-"""Fraction of the total length of cables and chains above which one of them is not short."""
+"""Fraction of the total length of cables and chains above which a cable or chain is not short."""
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,7 @@ class Elements:
         return np.stack([1.0 - self.place, self.place])
 
     def summed(self, per_load: Floats) -> Floats:
-        """Sum the values of the loads (..., k) on each bar; return values per bar (..., n)."""
+        """Return the sums (..., n) over the loads on each bar, from values (..., k) per load."""
         total: Floats = np.add.reduceat(per_load, self._first, axis=-1)
         return total
 
@@ -219,9 +219,8 @@ def _bars(line: Line, count: int) -> tuple[Floats, Integers, Integers, Floats]:
 
 
 def _along(piece: Integers, share: Floats, bars: Integers, span: Floats) -> tuple[Integers, Floats]:
-    """Find points at given fractions of the length of their pieces.
-
-    Return their bars, and their positions on the bars.
+    """Find the bars of points at given fractions of the length of their pieces, and the positions
+    of the points on the bars.
     """
     first, end = bars[piece].T
     begin, stop = span[piece].T

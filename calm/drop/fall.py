@@ -26,13 +26,11 @@ longest time step then follows.
 MAX_STEP = 1e6
 """Length of the longest time step [s], after which a line is at rest."""
 SLOWEST_FLOW = 0.01
-"""Slowest flow past a line whose streamed distance is limited [m/s]."""
+"""Lowest flow speed that is tried to shorten the distance over which a line streams [m/s]."""
 STREAMED_WITHIN = 1e-4
 """Tolerance of the streamed distance, as a fraction of the line length."""
 LEAST_COMPRESSION = 1e-4
-"""Smallest compression of a settled bar that is laid down, as a fraction of the sum of all
-weights.
-"""
+"""Compression above which a settled bar is laid down, as a fraction of the sum of all weights."""
 _FALLS = 3
 RELEASED_SHARE = 0.6
 """Fraction of the anchor's weight that the ship still carries in the second step, and factor on
@@ -196,13 +194,6 @@ def _passing(before: ChainState, after: ChainState, bottom: float) -> ChainState
 
 
 def _stepped(mover: Mover, state: ChainState, step: float, depth: float) -> ChainState:
-    """Advance by one time step, or by a shorter step if necessary.
-
-    Raises
-    ------
-    NoEquilibrium
-        ``not-converged`` if even a very short step has no solution.
-    """
     shortest = _SHORTEST * depth
     extrapolations = (False, True) if state.velocity.any() else (True,)
     while step > shortest:
@@ -264,11 +255,7 @@ def _streamed(state: ChainState) -> float:
 
 
 def _slowed(mover: Mover, state: ChainState, streamed: float) -> ChainState:
-    """Find a slower flow in which the line streams the required distance [m] behind the ship.
-
-    Holding the free end closer in the full flow would instead bend the line in a way that a rope
-    does not bend.
-    """
+    """Find a slower flow in which the line streams the required distance [m] behind the ship."""
     sea = mover.sea
     reach = float(mover.chain.length.sum())
     current = sea.water.current_at(np.zeros(()))
@@ -281,6 +268,7 @@ def _slowed(mover: Mover, state: ChainState, streamed: float) -> ChainState:
         state = _settled(slower, replace(state, time=0.0), 1e-3 * water.depth)[-1]
         return _streamed(state) - streamed
 
+    # holding the free end closer in the full flow would bend the line as a rope does not bend
     share, least = 1.0, min(SLOWEST_FLOW / whole, 0.5)
     # halve the flow repeatedly, since a jump to a far slower flow may fold the line
     while excess(share := max(0.5 * share, least)) > 0.0:

@@ -23,8 +23,8 @@ MOMENTS = 5
 class DepthReached:
     """Largest depth that a piece or clamp reaches while the line falls and settles.
 
-    As in all tables, the depth of a piece is that of its upper end. As in the design check, the
-    depth rating is compared with the depth of the deeper end.
+    As in all tables, the depth of a piece is the depth of its upper end. As in the design check,
+    the depth rating is compared with the depth of the deeper end.
 
     Attributes
     ----------
@@ -197,7 +197,9 @@ def depths_of(pieces: Sequence[Piece], drop: Motion, rest: Motion) -> tuple[Dept
 
 
 def _depths(chain: BarChain, state: ChainState) -> tuple[Floats, Floats]:
-    """Return the depths [m] of the upper and lower ends of all pieces, and then of the clamps."""
+    """Return the depths [m] of the upper ends and of the deeper ends of all pieces, each followed
+    by the depths of the clamps.
+    """
     upper, lower = (-end[:, 2] for end in piece_ends(chain, state))
     clamps = -place_of(state, chain.clamp_bar, chain.clamp_place)[:, 2]
     return np.append(upper, clamps), np.append(np.maximum(upper, lower), clamps)
@@ -230,7 +232,7 @@ def piece_tensions(drop: Motion) -> tuple[Floats, Floats]:
 
 
 def _ends_of_pieces(drop: Motion, tension: Floats) -> Floats:
-    """Select tensions at the ends of pieces (t, p, 2) from those at the ends of bars (t, n, 2)."""
+    """Select the tensions (t, p, 2) at the ends of pieces from the tensions (t, n, 2) of bars."""
     first, end = drop.mover.chain.bars.T
     last = np.maximum(end, first + 1) - 1
     found = np.stack([tension[:, first, 0], tension[:, last, 1]], axis=2)

@@ -81,7 +81,7 @@ def launch_of(leg: Leg, fineness: Fineness = CHECK_FINENESS) -> Launch:
     Raises
     ------
     NoEquilibrium
-        The tow or the fall has no solution; the statuses are those of `towed` and `fall`.
+        The tow or the fall has no solution; for the statuses, see `towed` and `fall`.
     """
     line, water, anchor = falling_line(leg), leg.water, falling_anchor(leg)
     ship = ship_of(leg, SHIP_SPEED, course_into_current(water))

@@ -101,10 +101,10 @@ def loads_on(
     if on.thins:
         grown = dense * (1.0 + 2.0 * on.thinning * (np.sqrt(1.0 + np.maximum(strain, 0.0)) - 1.0))
     lift, stiffness, wet, wetting, push = _afloat(chain, sea, height, density)
-    speed = np.sqrt(_products(flow, flow) + slowest**2)
-    along = on.directional * _products(flow, axis)
+    speed = np.sqrt(_scalar_products(flow, flow) + slowest**2)
+    along = on.directional * _scalar_products(flow, axis)
     across = flow - along * axis
-    size = np.sqrt(_products(across, across) + slowest**2)
+    size = np.sqrt(_scalar_products(across, across) + slowest**2)
     kn, kt = grown * variation * on.normal_drag, on.directional * grown * on.tangential_drag
     square, slope, aside, oblique = _friction(chain, kt, along, speed, slowest)
     sized = kn * size
@@ -139,8 +139,7 @@ def _diagonal(matrices: Floats) -> Floats:
     return matrices.reshape(9, -1)[::4]
 
 
-def _products(one: Floats, other: Floats) -> Floats:
-    """Return the (k,) scalar products of vectors (3, k)."""
+def _scalar_products(one: Floats, other: Floats) -> Floats:
     products: Floats = np.einsum("ij,ij->j", one, other)
     return products
 

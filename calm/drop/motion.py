@@ -42,7 +42,7 @@ class NoStep(ArithmeticError):
 
 
 def _overturned(before: Floats, after: Floats) -> bool:
-    """True if any bar has rotated by more than 120°, so that it may be under compression."""
+    """Return whether any bar has rotated by more than 120°, so that it may be under compression."""
     chords = before[1:] - before[:-1], after[1:] - after[:-1]
     along = np.einsum("ij,ij->i", *chords)
     if along.min() >= 0.0:  # almost always
@@ -288,7 +288,9 @@ class Mover:
             residual[:3, -1] += force
             diagonal[..., -1] += by_velocity / step
         beside = blocks[0, 1] + stiff, blocks[1, 0] + stiff
-        return _solved(residual, diagonal, beside, axis, -chain.length * growth, self._fixed)
+        return _solved(
+            residual, diagonal, beside, axis, -chain.length * growth, self._fixed_unknowns
+        )
 
     @cached_property
     def _sinking(self) -> float:
@@ -304,8 +306,7 @@ class Mover:
         return bearing
 
     @cached_property
-    def _fixed(self) -> tuple[int, ...]:
-        """Indices of the unknowns that are fixed because an end of the chain is held."""
+    def _fixed_unknowns(self) -> tuple[int, ...]:
         last = 4 * len(self.chain.length)
         upper = () if self.tether is None else (0, 1)
         return (*upper, last, last + 1, last + 2) if self.held else upper

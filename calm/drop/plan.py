@@ -328,13 +328,11 @@ def drop_plan(
 
 
 def _one_or_all(times: Mapping[str, float] | None) -> float | dict[str, float] | None:
-    """Return the handling time as one number if it is the same for all roles, else by role."""
     once = set((times or {}).values())
     return once.pop() if len(once) == 1 else None if times is None else dict(times)
 
 
 def _equilibrium(mooring: Design) -> Result | None:
-    """Solve the mooring; return None if it is slack in still water and has no unique shape."""
     try:
         return mooring.solve()
     except NoEquilibrium as failure:
@@ -344,7 +342,7 @@ def _equilibrium(mooring: Design) -> Result | None:
 
 
 def _split(state: ChainState, toward: Floats) -> tuple[float, float]:
-    """Return the distances of the anchor towards the float and to the right of it [m]."""
+    """Return the distances of the anchor towards the float and to the right of this line [m]."""
     (east, north), (x, y) = state.node[-1, :2].tolist(), toward.tolist()
     return east * x + north * y, east * y - north * x
 
@@ -354,12 +352,8 @@ def _run_start(
 ) -> RunStart:
     """Compute the start of the run, with cables paid out at the speed of the ship.
 
-    Parameters
-    ----------
-    heading : (2,) direction of the ship
-    speed : speed of the ship over the ground [m/s]
-    past : distance past the target at which the anchor is released, along the course [m]
-    deck_time : see `drop_plan`
+    `heading` is the direction (2,) of the ship, `speed` its speed over the ground [m/s], and `past`
+    the distance past the target at which the anchor is released [m].
     """
     pieces = leg.file.pieces[:-1]
     roles = [piece.component.role for piece in pieces]

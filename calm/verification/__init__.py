@@ -21,4 +21,4 @@ SOURCES: tuple[Source, ...] = (
     drag_and_sea_water.DRAG_CURVES, drag_and_sea_water.STRUMMING_FACTORS,
     drag_and_sea_water.SEA_WATER, ANCHOR_DROP, drag_and_sea_water.CALM_PAPER,
 )  # fmt: skip
-"""All sources, beginning with those about the solver itself."""
+"""All sources, beginning with the sources about the solver itself."""

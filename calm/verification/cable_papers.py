@@ -94,11 +94,7 @@ def _afloat() -> Solution:
 
 @cache
 def _towed() -> Wake:
-    """Return the shape of the tow, as solved by the march.
-
-    The body pulls the cable with the printed tension T_A at the angle φ_A.
-    """
-    pull, angle = 63.401, radians(116.373)
+    pull, angle = 63.401, radians(116.373)  # printed tension T_A and angle φ_A at the body
     body = point(-pull * sin(angle), -pull * cos(angle))
     cable = LinePiece(100.0, True, -_TOW_WEIGHT, normal_drag=_K * _TOW_WEIGHT)
     return towed(line_of(cable, body), deep_water(), 1.0)
@@ -219,7 +215,6 @@ _LAW = BourgetMarichal()
 
 
 def _line(length: float, *others: LinePiece, strums: bool = True) -> Line:
-    """Return a line of a given length of the cable, with other pieces towed at its end."""
     cable = LinePiece(length, True, -_WEIGHT, HALF_DENSITY * _DIAMETER * _LAW.rest)
     diameter = np.array([_DIAMETER] + [0.0] * len(others))
     return replace(
@@ -311,12 +306,7 @@ _LENGTH, _UNIT = 1.25, 0.5
 
 @cache
 def _cable(start: float, mean: float) -> Station:
-    """Return the end of the cable under unit load.
-
-    Parameters
-    ----------
-    start, mean : angles α₀ and α_d [degrees]
-    """
+    """Return the end of the cable under unit load, for the angles α₀ and α_d [degrees]."""
     angle = radians(mean)
     return linear_cable(_LENGTH, _UNIT, radians(start), sin(angle), cos(angle))
 

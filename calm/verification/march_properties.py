@@ -68,7 +68,8 @@ def _solved() -> Solution:
 def _apart(one: Solution, other: Solution) -> float:
     """Return the largest difference between two solutions at the ends of their pieces.
 
-    Differences in position are divided by the depth, and those in tension by the largest tension.
+    Differences in position are divided by the depth, and differences in tension by the largest
+    tension.
     """
     here, there = one.piece_nodes.ravel(), other.piece_nodes.ravel()
     place = np.abs(one.position[here] - other.position[there]).max() / one.water.depth
@@ -91,22 +92,14 @@ def _mirrored(east: float, north: float) -> float:
     return _apart(_solved(), replace(other, position=other.position * [east, north, 1.0]))
 
 
-def _deeper() -> float:
-    """Compare a mooring with a copy in water that is 100 m deeper.
-
-    The current is moved down by 100 m with the mooring.
-    """
+def _difference_if_deeper() -> float:
     down = 100.0
     water = replace(_SEA, depth=_SEA.depth + down, level=_SEA.level + down)
     here, there = solve_mooring(_LINE, _SEA, FINE), solve_mooring(_LINE, water, FINE)
     return _apart(here, replace(there, position=there.position + np.array([0.0, 0.0, down])))
 
 
-def _similar(length: float, force: float, speed: float) -> float:
-    """Compare a mooring with a copy in other units of length, force and speed.
-
-    The drag factors are scaled accordingly.
-    """
+def _difference_in_other_units(length: float, force: float, speed: float) -> float:
     amount = force / np.where(_LINE.flexible, length, 1.0)
     line = replace(
         _LINE, length=_LINE.length * length, buoyancy=_LINE.buoyancy * amount,
@@ -127,8 +120,7 @@ def _similar(length: float, force: float, speed: float) -> float:
     )
 
 
-def _split() -> float:
-    """Compare the mooring S1000 with a copy whose cable is divided into ten pieces."""
+def _difference_if_split() -> float:
     finest = Settings(radians(0.01), tolerance=1e-10)
     whole, split = (
         solve_mooring(solved_moorings.s1000_mooring(parts), solved_moorings.S1000_SEA, finest)
@@ -220,13 +212,11 @@ def _plumb() -> float:
 
 @cache
 def _undercurrent() -> Solution:
-    """Solve a float of 500 N on 100 m of thread, in a current that increases below the float."""
     line = line_of(point(500.0, 100.0), LinePiece(100.0, True, 0.0))
     return solve_mooring(line, profile(110.0, [(0.0, 0.2), (12.0, 0.2), (30.0, 3.0)]), _TIGHT)
 
 
-def _other_depth() -> float:
-    """Return the depth of the float in its second equilibrium [m]; 0 if none was found."""
+def _depth_of_other_equilibrium() -> float:
     other = _undercurrent().other
     return 0.0 if other is None else other.depth
 
@@ -261,9 +251,9 @@ gives the highest and reports the deepest; the equilibrium between them is unsta
                  lambda: _mirrored(1.0, -1.0)),
         _nothing("seabed and axes moved by 100 m: the line follows", 4e-6,
                  "The shapes have different segments; each has an error of 2e-6 at 0.1°.",
-                 _deeper),
+                 _difference_if_deeper),
         _nothing("lengths × 3, forces × 0.2, speeds × 1.7: similar", 1e-8, _SAME,
-                 lambda: _similar(3.0, 0.2, 1.7)),
+                 lambda: _difference_in_other_units(3.0, 0.2, 1.7)),
         _nothing("anchor reaction − sum of all loads", 1e-9,
                  "Rounding; the loads are recomputed from the final coordinates.", _reaction),
         _nothing("no current: plumb, tensions are sums", 1e-12, "Rounding.", _plumb),
@@ -271,14 +261,15 @@ gives the highest and reports the deepest; the equilibrium between them is unsta
         _nothing("constant friction: T − T₀ − w Δz − F s, over T", 1e-6, _RODS,
                  _tension_by_height_and_friction),
         _nothing("S1000 with its cable in ten pieces", 1e-8,
-                 "The error of the march is 1e-9 of the depth at an angle step of 0.01°.", _split),
+                 "The error of the march is 1e-9 of the depth at an angle step of 0.01°.",
+                 _difference_if_split),
         *(
             Case(f"C20 three equilibria: depth of the {name}", depth, "m", 1e-6,
                  "The roots are given to nine digits; CALM closes to 1e-9 of the depth.", got,
                  Kind.CLOSED_FORM)
             for name, depth, got in (
                 ("highest", 10.0031998, lambda: -float(_undercurrent().position[0, 2])),
-                ("lowest", 61.4357069, _other_depth),
+                ("lowest", 61.4357069, _depth_of_other_equilibrium),
             )
         ),
     ),

@@ -317,8 +317,8 @@ class Ends:
 
     Attributes
     ----------
-    x, z : distance downstream of the free end from the lower end, and height of the free end above
-        the lower end [m]
+    x, z : horizontal distance of the free end downstream of the lower end, and height of the free
+        end above the lower end [m]
     horizontal, vertical : components of the force at the lower end, downstream and upward [N]
     """
 

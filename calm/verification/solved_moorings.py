@@ -26,7 +26,7 @@ _FINEST = 0.02
 
 
 def s1000_mooring(parts: int = 1) -> Line:
-    """Return the line of the mooring S1000, with its cable divided into a number of equal parts."""
+    """Return the line of the mooring S1000, with its cable divided into `parts` equal parts."""
     part = published_case.cable(1000.0 / parts, 0.01, 2.0, 1.3, 0.01, 1.0 / 4e6)
     return published_case.line_of(
         published_case.point(4000.0, published_case.HALF_DENSITY * 0.6), *[part] * parts
@@ -61,7 +61,7 @@ def _figures(place: float, tension: float) -> tuple[CaseColumn[Solution], ...]:
 def _order(coarse: float, fine: float) -> float:
     """Return the order of convergence of the float's depth, from two angle steps [degrees].
 
-    The depths are those of the march, before extrapolation.
+    The depths come from the march, before extrapolation.
     """
     errors = [
         abs(float_depth(solved_s1000(degrees).as_marched) - DEPTH) for degrees in (coarse, fine)
@@ -168,8 +168,7 @@ def _centre(piece: int, solution: Solution) -> tuple[float, float]:
     return offset, 0.5 * (height_at(solution, first) + height_at(solution, last))
 
 
-def _stretched(piece: int, solution: Solution) -> float:
-    """Return the length of a piece under load [m]."""
+def _stretched_length(piece: int, solution: Solution) -> float:
     first, last = solution.piece_nodes[piece].tolist()
     place = solution.position[first : last + 1]
     return float(np.linalg.norm(np.diff(place, axis=0), axis=1).sum())
@@ -260,7 +259,7 @@ tension.""",
              lambda: _centre(_FIRST_GLASS, solved_cdms_1())[1], Kind.PUBLISHED),
         Case("C16 printed: 98 m of Kevlar under load", 98.24, "m", 0.011,
              "Printed to the centimetre, plus 2 % of the stretch for the error of the tension.",
-             lambda: _stretched(_FIRST_KEVLAR, solved_cdms_1()), Kind.PUBLISHED),
+             lambda: _stretched_length(_FIRST_KEVLAR, solved_cdms_1()), Kind.PUBLISHED),
     ),
     picture="verification-cdms-1",
 )  # fmt: skip

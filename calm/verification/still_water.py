@@ -60,10 +60,8 @@ def _number(field: ArrayLike) -> float:
 def _pulled(pull: tuple[float, float], length: float, weight: float, stiffness: float) -> Line:
     """Return a line without drag below a float.
 
-    Parameters
-    ----------
-    pull : horizontal and upward force on the float in a flow of 1 m/s [N]
-    length, weight, stiffness : of the line [m], [N/m], [N]
+    `pull` is the horizontal and upward force on the float in a flow of 1 m/s [N]. Length, weight
+    and stiffness are in m, N/m and N.
     """
     horizontal, vertical = pull
     return line_of(
@@ -208,8 +206,7 @@ ELASTIC_HANG = Source(
 _SLACK_DEPTH, _SCOPE = 540.0, 2.0
 
 
-def _radius() -> float:
-    """Return the watch-circle radius [m] that the error for a slack line states."""
+def _stated_watch_circle_radius() -> float:
     rope = cable(_SCOPE * _SLACK_DEPTH, 0.02, 1.0, 1.3, 0.0)
     try:
         solve_mooring(line_of(point(20_000.0, 100.0), rope), stream(_SLACK_DEPTH, 0.0))
@@ -228,7 +225,7 @@ unique shape. CALM reports the status `slack` and the radius of the watch circle
 depth · √(scope² − 1). PacIOOS publishes 934 m, 1.73 times the depth, for this mooring.""",
     (
         Case("C22 radius", 934.0, "m", 0.002 * 934.0,
-             "0.2 %: 1.73 is √3 to three digits.", _radius, Kind.PUBLISHED),
+             "0.2 %: 1.73 is √3 to three digits.", _stated_watch_circle_radius, Kind.PUBLISHED),
     ),
 )  # fmt: skip
 
@@ -287,7 +284,7 @@ def _plumb() -> float:
 def _alone() -> float:
     """Return the terminal speed of a heavy sphere on a light thread with a cork [m/s].
 
-    The thread and the cork hardly affect it.
+    The thread and the cork hardly affect the speed.
     """
     line = line_of(
         LinePiece(0.05, False, 1.0, 1e-3, directional=False), cable(300.0, 1e-6, 1e-6, 1.3, 0.0)

@@ -97,12 +97,10 @@ def _identity(speed: float) -> Case:
 
 
 def _thread(length: float, force: float, place: float, angle: float) -> list[CaseColumn[Ends]]:
-    """Return the table columns for a float on a thread.
+    """Return the table columns for a float on a thread of a given length [m].
 
-    Parameters
-    ----------
-    length : length of the thread [m]
-    force, place, angle : tolerances of forces [N], positions [m] and angles [degrees]
+    `force`, `place` and `angle` are the tolerances of forces [N], positions [m] and angles
+    [degrees].
     """
     return [
         CaseColumn("drag", "N", force, lambda ends: ends.horizontal),
@@ -116,7 +114,6 @@ def _thread(length: float, force: float, place: float, angle: float) -> list[Cas
 def _by_speed(
     name: str, solve: Callable[[float], Solved], rows: Iterable[tuple[float, ...]]
 ) -> list[tuple[str, Callable[[], Solved], list[float]]]:
-    """Return the rows of a table whose first column is the speed [m/s]."""
     return [(f"{name}, {v} m/s", partial(solve, v), figures) for v, *figures in rows]
 
 
@@ -276,10 +273,6 @@ def _functions(critical: float, friction: float, angle: float) -> uniform.CableF
 
 @cache
 def _march(critical: float, friction: float, arc: float) -> Wake:
-    """Solve the tow of a body of 100 N without drag.
-
-    The normal drag of the cable is 1 N/m at 1 m/s.
-    """
     weight = float(uniform.critical_weight_ratio(radians(critical)))
     rope = LinePiece(_PULL * arc, True, -weight, 1.0, friction)
     line = replace(line_of(rope, point(-_PULL, 0.0)), friction=Friction.CONSTANT)

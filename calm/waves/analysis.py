@@ -105,8 +105,6 @@ class WaveAnalysis:
 
 @dataclass(frozen=True)
 class _Setting:
-    """Line, float and water of an analysis, and the number of frequencies per sea state."""
-
     line: LumpedLine
     buoy: Buoy | None
     water: Waves
@@ -118,10 +116,6 @@ class _Setting:
     def respond(
         self, sea: SeaState, first: Floats | None = None, *, once: bool = False, drag: float = 1.0
     ) -> tuple[WaveResponse, Floats]:
-        """Compute the response to a sea state, and the flow past the nodes.
-
-        `first` is an initial estimate of this flow, such as the flow in a similar sea state.
-        """
         waves = self.waves(sea)
         return respond(self.line, self.buoy, waves, sea, drag_factor=drag, first=first, once=once)
 
@@ -223,7 +217,6 @@ def analyse(
 
 
 def _fatigue(piece: Piece, states: Sequence[MooringInSea]) -> PieceFatigue:
-    """Compute the fatigue of a piece, also for half and for twice the cut-off frequency."""
     found, half, twice = (
         fatigue_of(
             piece.component, piece.index, piece.label,
@@ -252,7 +245,7 @@ def _settled(
         if mesh > SETTLED:
             longest *= 0.5
             finer = replace(setting, line=lumped_line(leg, solution, longest))
-            carried = [_carried(setting.line, finer.line, flow) for flow in flows]
+            carried = [_interpolated_flow(setting.line, finer.line, flow) for flow in flows]
             better, passing = finer.deviations(seas, carried)
             mesh = _change(found, better)
             if mesh > SETTLED:
@@ -267,8 +260,7 @@ def _settled(
     return setting, flows[0], WaveAccuracy(mesh, frequencies, _change(found, less))
 
 
-def _carried(line: LumpedLine, finer: LumpedLine, flow: Floats) -> Floats:
-    """Interpolate the flow past the nodes to the nodes of a finer line of the same shape."""
+def _interpolated_flow(line: LumpedLine, finer: LumpedLine, flow: Floats) -> Floats:
     along, at = (np.concatenate([[0.0], each.span.cumsum()]) for each in (line, finer))
     nodes = np.column_stack([np.interp(at, along, values) for values in flow[:-1].T])
     return np.vstack([nodes, flow[-1:]])

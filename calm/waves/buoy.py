@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from calm.solve import Solution
 
 DISC_ADDED = 4.0 / 3.0
-"""Added mass of a disc at the surface, divided by ρR³: half that of a deeply submerged disc, 8/3
-(Lamb 1932).
+"""Added mass of a disc at the surface, divided by ρR³: half the value of a deeply submerged disc,
+8/3 (Lamb 1932).
 """
 
 DISC_CD = 1.17
@@ -30,15 +30,15 @@ SIDEWAYS_ADDED = 0.5
 """Added mass of a short hull in surge, divided by the displaced mass."""
 
 DISC_TURNED = 8.0 / 45.0
-"""Added moment of inertia of a disc at the surface, divided by ρR⁵: half that of a deeply submerged
-disc (Lamb 1932).
+"""Added moment of inertia of a disc at the surface, divided by ρR⁵: half the value of a deeply
+submerged disc (Lamb 1932).
 """
 
 END_LOSS = 0.42
 """Length scale, in radii R, over which the flow around the keel reduces the added mass in surge.
 
 The added mass of a section at height h above the keel is multiplied by 1 - e^(-h/0.42R). For
-cylinders with a draft of 0.6 to 10 radii, the added mass then agrees with that of a panel method
+cylinders with a draft of 0.6 to 10 radii, this added mass agrees with the result of a panel method
 (Capytaine 3) within 4 %.
 """
 
@@ -207,11 +207,11 @@ class Buoy:
     ) -> tuple[Floats, Floats, Complexes]:
         """Compute added mass (3, f), damping (3, f) and exciting forces (2, f), as in `pitch`.
 
-        All are integrated over the sections of the hull. Exciting forces include the wave pressure
-        on the hull and the inertia of the water, with the local acceleration. The added mass of the
-        sections is reduced by `END_LOSS`, and that of the bottom follows from `DISC_TURNED`.
-        Radiation follows from Haskind's relation, k ω Xi Xj / (4 ρ g²) in deep water (Newman 1977,
-        6.18).
+        All results are integrated over the sections of the hull. Exciting forces include the wave
+        pressure on the hull and the inertia of the water, with the local acceleration. The added
+        mass of the sections is reduced by `END_LOSS`, and the added mass of the bottom follows from
+        `DISC_TURNED`. Radiation follows from Haskind's relation, k ω Xi Xj / (4 ρ g²) in deep water
+        (Newman 1977, 6.18).
         """
         radius, height = profile.T
         area = pi * radius**2

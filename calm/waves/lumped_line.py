@@ -252,10 +252,7 @@ def _figures_of(component: Component, length: float) -> dict[str, float]:
 
 
 def _volume(component: Component, length: float) -> float:
-    """Return the displaced volume [m³], or for a flexible component per metre [m³/m].
-
-    If the volume is not specified, it is estimated from the outer dimensions.
-    """
+    """Return the displaced volume [m³], or [m³/m] for a flexible component."""
     diameter = float(getattr(component, "diameter", 0.0) or 0.0)
     if isinstance(component, Cable):
         return pi * diameter**2 / 4.0

@@ -43,8 +43,8 @@ _BY_HEAVE = {
 }
 """Bands in low and in high seas for each method of computing heave. The bands enclose the observed
 ratios of computed to measured tension. For `filtered`, these ratios are 1.04 to 1.71 in low seas
-and 0.93 to 1.34 in high seas; for `panels`, 1.13 to 1.81 and 0.96 to 1.40; for `follows`, 1.44 to
-2.24 and 1.12 to 1.66.
+and 0.93 to 1.34 in high seas. For `panels`, they are 1.13 to 1.81 and 0.96 to 1.40. For `follows`,
+they are 1.44 to 2.24 and 1.12 to 1.66.
 """
 
 

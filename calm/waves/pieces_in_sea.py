@@ -152,9 +152,8 @@ class _Tensions:
         self.mean, self.duration = line.tension, duration
 
     def loads(self, piece: int, mean: float, own: slice, factor: float = 1.0) -> PieceLoads:
-        """Return the tensions of a piece with the springs `own`.
-
-        Standard deviations are multiplied by `factor`.
+        """Return the tensions of a piece with the springs `own`; standard deviations are multiplied
+        by `factor`.
         """
         deviation, apart = factor * float(self.at_ends[piece]), float(self.periods[piece])
         most = greatest_of(deviation, apart, self.duration)
@@ -248,9 +247,8 @@ def mooring_in_sea(
 
 
 def _springs(line: LumpedLine, piece: int) -> slice:
-    """Return the springs of a piece as a slice, which is empty on the seabed."""
     first = int(line.piece_spring[piece])
-    if first < 0:
+    if first < 0:  # on the seabed
         return slice(0)
     below = line.piece_spring[line.piece_spring > first]
     return slice(first, int(below.min()) if len(below) else len(line.tension))

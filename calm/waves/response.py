@@ -1,6 +1,6 @@
 """Linear response of a line to waves, frequency by frequency.
 
-Drag is linearised so that it dissipates the same energy.
+The linearised drag dissipates the same energy as the quadratic drag.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ class WaveResponse:
         return np.sqrt(zeroth), period
 
     def below(self, limit: float) -> WaveResponse:
-        """Return the response to only those waves whose frequency is below `limit` [rad/s].
+        """Return the response to the waves with frequencies below `limit` [rad/s].
 
         Each frequency stands for the waves in an interval that ends halfway to the neighbouring
         frequencies.
@@ -185,9 +185,8 @@ class _Afloat(NamedTuple):
         return cls(held, pushed * elevation[:, None], ways, waves.velocity(at), drag, slope)
 
     def dragged(self, omega: Floats, drag: Floats, turning: float) -> tuple[Complexes, Complexes]:
-        """Return stiffness and exciting forces including drag.
-
-        The drag is a linear drag (3, 3) and a rotational drag.
+        """Return stiffness and exciting forces, including a linear drag (3, 3) and a rotational
+        drag.
         """
         each = drag / len(self.ways)
         whole = np.einsum("pca,cd,pdb->ab", self.ways, each, self.ways)
@@ -386,7 +385,6 @@ def _by_sweep(
     damping: Floats,
     push: Complexes,
 ) -> Complexes:
-    """Solve by a compiled sweep along the line."""
     springs: Any = undamped[0]
     rates: Any = np.ascontiguousarray(omega)
     work: Any = np.empty((len(springs), 26))
@@ -411,7 +409,7 @@ def _by_blocks(
     damping: Floats,
     push: Complexes,
 ) -> Complexes:
-    """Solve by NumPy alone, which takes eight times as long as `_by_sweep`."""
+    """Solve with NumPy alone, which takes eight times as long as `_by_sweep`."""
     (across, excess, *axis), masses = undamped[0].T, undamped[1]
     axial = np.einsum("an,bn->nab", axis, axis)
     springs = across[:, None, None] * np.eye(3) + excess[:, None, None] * axial

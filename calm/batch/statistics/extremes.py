@@ -64,7 +64,7 @@ class Level:
     period : return period T [years]. With GEV, the annual maximum exceeds the level in one of T
         years on average; with POT, a peak exceeds the level once in T years on average
     level : estimated return level
-    low, high : ends of the confidence interval; None if the data do not determine it
+    low, high : ends of the confidence interval; None for an end that the data do not determine
     """
 
     period: int
@@ -123,7 +123,7 @@ def return_levels(
         `calm.batch.statuses.IN_WEAK_CURRENT`
     step : `median_step` of the times, if already known
     """
-    refusal = _censored(statuses) or _unfit(time, values)
+    refusal = _reason_if_censored(statuses) or _reason_against_fit(time, values)
     if refusal:
         return LevelsRefused("gev", refusal), LevelsRefused("pot", refusal)
     step = median_step(time) if step is None else step
@@ -137,8 +137,7 @@ def return_levels(
     return fits[0], fits[1]
 
 
-def _censored(statuses: Mapping[str, int]) -> str:
-    """Return the reason why unsolved profiles may contain the extremes, or an empty string."""
+def _reason_if_censored(statuses: Mapping[str, int]) -> str:
     ended = {ending: 0 for ending in (Ending.NO_EQUILIBRIUM, Ending.NOT_CONVERGED)}
     for status, count in statuses.items():
         if ending_of(status) in ended and status not in IN_WEAK_CURRENT:
@@ -150,8 +149,7 @@ def _censored(statuses: Mapping[str, int]) -> str:
     )
 
 
-def _unfit(time: Times, values: Column) -> str:
-    """Return the reason why no distribution can be fitted, or an empty string."""
+def _reason_against_fit(time: Times, values: Column) -> str:
     count = int(np.count_nonzero(np.isfinite(values)))
     if count < 2:
         return f"there are too few values ({count})"
@@ -181,7 +179,7 @@ def _by_maxima(
         f"{_gaps(time, values, step)}"
     )
     growths = {period: -log(-log1p(-1.0 / period)) for period in _periods(years)}
-    return _fit("gev", tail, 1.0, rules, growths)
+    return _fit_with_levels("gev", tail, 1.0, rules, growths)
 
 
 def _by_peaks(
@@ -218,7 +216,7 @@ def _over(
         f"intervals between exceedances (Ferro and Segers 2003){gaps}"
     )
     growths = {period: log(rate * period) for period in _periods(years) if rate * period > 1.0}
-    return _fit("pot", tail, rate, rules, growths)
+    return _fit_with_levels("pot", tail, rate, rules, growths)
 
 
 def _gaps(time: Times, values: Column, step: np.timedelta64) -> str:
@@ -236,8 +234,9 @@ def _periods(years: float) -> list[int]:
     return [period for period in PERIODS if period <= EXTRAPOLATION * years]
 
 
-def _fit(method: str, tail: tails.Tail, rate: float, rules: str, growths: dict[int, float]) -> Fit:
-    """Return the fit with its levels; intervals are omitted if likelihood theory does not hold."""
+def _fit_with_levels(
+    method: str, tail: tails.Tail, rate: float, rules: str, growths: dict[int, float]
+) -> Fit:
     nothing = (None, None)
     sure = tail.shape > LEAST_SHAPE
     rules += (
@@ -274,7 +273,7 @@ def years_of(step: np.timedelta64, count: int) -> float:
 
 def median_step(time: Times) -> np.timedelta64:
     """Return the median time between profiles, which is not affected by gaps. For a single profile,
-    it is zero.
+    the median is zero.
     """
     if len(time) < 2:
         return np.timedelta64(0, "ns")

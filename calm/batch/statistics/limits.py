@@ -60,7 +60,7 @@ class CountedLimit:
         return _VALUES[self.criterion.quantity](own, self.criterion.part, self.leg)
 
     def broken(self, values: Column) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-        """Return, for each value (n,), whether the value violates the limit; false for NaN."""
+        """Return whether each value (n,) violates the limit; NaN does not."""
         limit = self.criterion.limit
         assert limit is not None
         beyond = values < limit if self.criterion.least else values > limit
@@ -90,7 +90,6 @@ def limits_of(mooring: Design) -> tuple[CountedLimit, ...]:
 
 
 def _on_estimate(rule: Rule, criterion: Criterion, leg: Leg) -> bool:
-    """Return whether the limit of a criterion is set by a value that is only an estimate."""
     figures, place = TEXTS[rule.name].figures, criterion.part.place
     if criterion.figure:
         figures = tuple(name for name in figures if name == criterion.figure)
@@ -193,10 +192,11 @@ class Exceedance:
     `count` is the number of profiles in which the limit can be evaluated, and `share` the fraction
     of these profiles that exceed the limit.
 
-    If the limit is an estimate, profiles that exceed it are left out of both numbers.
+    If the limit is an estimate, profiles that exceed the limit are excluded from both numbers.
 
-    `worst` is the value farthest beyond the limit, or the value closest to the limit if no value is
-    beyond it. `time` is the time of this value. Both are None if there is no limit or no value.
+    `worst` is the value farthest beyond the limit or, if no value is beyond the limit, the value
+    closest to the limit. `time` is the time of this value. `worst` and `time` are None if there is
+    no limit or no value.
     """
 
     limit: CountedLimit
@@ -276,7 +276,6 @@ def _rule_share(
     unsolved: int,
     exceedances: tuple[Exceedance, ...],
 ) -> RuleShare:
-    """Convert numbers of profiles to the fractions for a rule."""
     return RuleShare(
         name=rule.name,
         title=rule.title,

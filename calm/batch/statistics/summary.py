@@ -85,8 +85,8 @@ class Response:
 
 @dataclass(frozen=True)
 class WorstProfile:
-    """One of the worst profiles, with its responses. `leaning` is the label of the part with the
-    largest tilt.
+    """Responses of one of the worst profiles. `leaning` is the label of the part with the largest
+    tilt.
     """
 
     time: np.datetime64
@@ -153,8 +153,8 @@ class Summary:
 
     @property
     def unsolved(self) -> int:
-        """Number of profiles that have a current but no solution, because none exists or none was
-        found.
+        """Number of profiles that have a current but no solution, because no solution exists or
+        none was found.
         """
         return self.count - self.solved - self.endings[Ending.NO_DATA]
 
@@ -293,11 +293,9 @@ def _columns_of(series: ResultColumns, mooring: Design) -> _LegColumns:
 def _responses(
     series: ResultColumns, legs: _LegColumns, step: np.timedelta64
 ) -> tuple[tuple[Response, ...], Mapping[str, tuple[WorstProfile, ...]]]:
-    """Compute the statistics of all responses, holding the values of one response in memory at a
-    time.
-    """
     responses, worst = [], {}
     for name, of in RESPONSES.items():
+        # only the values of one response are in memory at a time
         values = np.full(len(series), np.nan, np.float32)
         for leg in legs[name]:
             np.fmax(values, of(leg), out=values)

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 CONFIDENCE = 0.95
-"""Confidence of the intervals by `Tail.interval`: fraction that contains the true level if all
-assumptions hold.
+"""Confidence level of the intervals by `Tail.interval`: fraction of intervals that contain the true
+level if all assumptions hold.
 """
 
 CHI_SQUARE = 3.841458820694124
@@ -28,8 +28,8 @@ LEAST_SHAPE = -0.5
 
 SHAPES = (-1.0, 2.0)
 """Searched range of the shape parameter. At -1 and below, the likelihood has no maximum (Coles
-2001, §3.3.2). The upper bound is a choice of CALM: from 1 on even the mean is infinite, unlike that
-of any force or depth.
+2001, §3.3.2). The upper bound is a choice of CALM: from 1 on even the mean is infinite, whereas
+forces and depths have finite means.
 """
 
 _AT_BOUND = 0.01  # our choice: a hundred times the accuracy of the search for a shape
@@ -97,14 +97,14 @@ class Tail:
                 scale = (level - self.location) / _grown(free[0], growth)
                 return _loss(self.values, self.location, scale, free[0], False)
 
-            return _least(of_shape, [self.shape], [0.0])[1]
+            return _minimise(of_shape, [self.shape], [0.0])[1]
 
         def of_both(free: Floats) -> float:
             scale = exp(free[0])
             location = level - scale * _grown(free[1], growth)
             return _loss(self.values, location, scale, free[1], True)
 
-        return _least(of_both, [log(self.scale), self.shape], [log(self.scale), 0.0])[1]
+        return _minimise(of_both, [log(self.scale), self.shape], [log(self.scale), 0.0])[1]
 
 
 def fit_maxima(values: Floats) -> Tail:
@@ -126,9 +126,9 @@ def fit_maxima(values: Floats) -> Tail:
     def loss(free: Floats) -> float:
         return _loss(scaled, free[0], exp(free[1]), free[2], True)
 
-    found, _ = _least(loss, [-_EULER * scale, log(scale), 0.0])
+    found, _ = _minimise(loss, [-_EULER * scale, log(scale), 0.0])
     location, size = middle + spread * float(found[0]), spread * exp(found[1])
-    return Tail(location, size, _inside(found[2]), True, values)
+    return Tail(location, size, _shape_inside_range(found[2]), True, values)
 
 
 def fit_excesses(values: Floats, threshold: float) -> Tail:
@@ -149,12 +149,11 @@ def fit_excesses(values: Floats, threshold: float) -> Tail:
     def loss(free: Floats) -> float:
         return _loss(scaled, 0.0, exp(free[0]), free[1], False)
 
-    found, _ = _least(loss, [0.0, 0.0])
-    return Tail(threshold, size * exp(found[0]), _inside(found[1]), False, values)
+    found, _ = _minimise(loss, [0.0, 0.0])
+    return Tail(threshold, size * exp(found[0]), _shape_inside_range(found[1]), False, values)
 
 
-def _inside(shape: float) -> float:
-    """Return a fitted shape parameter, or raise NotFitted if it is at a bound of the search."""
+def _shape_inside_range(shape: float) -> float:
     for bound in SHAPES:
         if abs(shape - bound) <= _AT_BOUND:
             raise NotFitted(
@@ -192,8 +191,7 @@ def _apart(shape: float) -> float:
     return shape if abs(shape) > _NO_SHAPE else _NO_SHAPE
 
 
-def _least(loss: Callable[[Any], float], *starts: list[float]) -> tuple[Floats, float]:
-    """Minimise the loss from the best starting point, and return the minimum with its loss."""
+def _minimise(loss: Callable[[Any], float], *starts: list[float]) -> tuple[Floats, float]:
     from scipy.optimize import minimize
 
     start = min(starts, key=lambda one: loss(np.array(one)))
