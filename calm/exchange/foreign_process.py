@@ -37,7 +37,7 @@ def read_apart(
     from multiprocessing import Pipe, Process
 
     here, there = Pipe(duplex=False)
-    child = Process(target=_read, args=(there, reader, given, named), daemon=True)
+    child = Process(target=_send_result, args=(there, reader, given, named), daemon=True)
     child.start()
     there.close()
     try:
@@ -59,11 +59,10 @@ def read_apart(
     return found
 
 
-def _read(
+def _send_result(
     pipe: Connection, reader: Callable[..., Any], given: tuple[Any, ...], named: dict[str, Any]
 ) -> None:
-    """Run a reader; send its result or error message, and discard its printed output."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # discard messages of the libraries
     _limit_memory()
     try:
         pipe.send((reader(*given, **named), ""))

@@ -167,7 +167,7 @@ class Preprocessor:
         self._lines.append(SourceLine(expanded, path, number))
 
     def _expanded(self, text: str, hidden: frozenset[str] = frozenset()) -> str:
-        """Expand the macros in a text, except inside quotation marks and macros in `hidden`."""
+        """Expand the macros in a text, except texts in quotation marks and macros in `hidden`."""
         pieces: list[str] = []
         size, at = 0, 0
         while found := _PIECE.match(text, at):

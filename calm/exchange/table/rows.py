@@ -144,13 +144,12 @@ def rows_of(
         if several and row.count == 1 and not (row.is_line and not _LENGTHS.match(name)):
             remark = f"read as one piece with the values of its row, not as {several[1]} pieces"
             guessed.append(model.Remark(row.where, remark))
-        _divide(row, known, guessed)
+        _divide_totals(row, known, guessed)
         rows.append(row)
     return rows
 
 
 def _row(cells: list[str], row: ListRow, known: dict[str, ListColumn], decimal: str) -> ListRow:
-    """Convert the cells of a row to texts and values."""
     row.label, row.kind, row.role = (
         cell_of(cells, known.get(what)).removeprefix("'") for what in ("label", "kind", "role")
     )
@@ -194,8 +193,7 @@ def _row(cells: list[str], row: ListRow, known: dict[str, ListColumn], decimal: 
     return row
 
 
-def _divide(row: ListRow, known: dict[str, ListColumn], guessed: list[model.Remark]) -> None:
-    """Divide values by the count of pieces in a row, if the heading shows that they are totals."""
+def _divide_totals(row: ListRow, known: dict[str, ListColumn], guessed: list[model.Remark]) -> None:
     totals = [what for what in _SHARED if what in row.figures and what in known]
     totals = [what for what in totals if known[what].whole and what not in row.metre]
     if row.count == 1 or not totals:
