@@ -31,7 +31,7 @@ SAMPLED = 64_000_000
 
 
 class CurrentDataset:
-    """A dataset of currents in which velocity, levels, times and place have been identified.
+    """A dataset of currents in which velocity, levels, times and position have been identified.
 
     Values of the current are read later. The constructor raises UnreadableError if no current can
     be read; the message gives the reason and the contents of the file.
@@ -55,7 +55,7 @@ class CurrentDataset:
         self._terms = terms
         self._velocity = current = velocity.find_velocity(dataset, regular=is_regular(dataset))
         velocity.refuse_ragged(dataset, current.names[0])
-        self.turned = _turned(current, terms.declination)
+        self.turned = _rotation_notice(current, terms.declination)
         clock = cf_files.find_times(dataset, current.names[0])
         self.times = None if clock is None else cf_files.read_times(dataset, clock)
         self._time = None if clock is None else next(map(str, dataset[clock].dims), None)
@@ -65,7 +65,7 @@ class CurrentDataset:
             self.labels = cf_files.labels_along(dataset, along[0]) or ()
         if not self.labels:
             column = choose_column(dataset, current.names, self._time, terms.place)
-            level, dataset = _single_levels(dataset.isel(column.index), current, self._time)
+            level, dataset = _level_dimension(dataset.isel(column.index), current, self._time)
             self._levels = find_levels(dataset, level, self._time, terms.water_depth)
         self.source, notices = {"velocity": ", ".join(current.all_names)}, [*column.notes]
         if self._levels is not None:
@@ -166,7 +166,7 @@ class CurrentDataset:
                 index = index[::sparse]
             times = every[::sparse]
         summaries = {}
-        for taken, (variable, _) in zip(self._taken, self._parts, strict=False):
+        for taken, (variable, _) in zip(self._roles, self._parts, strict=False):
             values = self._along(variable, index, lambda one: one.values.astype(np.float64))
             low, high = cf_files.valid_range(variable)
             outside = (values < low) | (values > high)
@@ -214,18 +214,14 @@ class CurrentDataset:
         return card, [*notes, *current_doubts(values)]
 
     @property
-    def _taken(self) -> tuple[str, ...]:
-        """Roles of the variables of the current, in their order."""
+    def _roles(self) -> tuple[str, ...]:
         components = self._velocity.turn is None
         return ("east", "north", "up") if components else ("speed", "direction", "up")
 
     def _along(
         self, variable: xr.DataArray, index: Any, read: Callable[[xr.DataArray], Any]
     ) -> Any:
-        """Read a variable as a contiguous array of times by levels.
-
-        Contiguity makes sums over equal values equal to the last bit.
-        """
+        """Read a variable as a contiguous array (times, levels)."""
         like = self._parts[0][0]
         if set(variable.dims) != set(like.dims):
             variable = variable.broadcast_like(like)
@@ -233,6 +229,7 @@ class CurrentDataset:
             return read(variable).reshape(1, -1)
         levels = [dim for dim in like.dims if dim != self._time]
         values = read(variable.isel({self._time: index}).transpose(self._time, *levels))
+        # contiguous, so that sums over equal values are equal to the last bit
         return values.reshape(len(values), -1)
 
 
@@ -241,12 +238,7 @@ def share_of(good: Floats) -> Floats:
     return good / 100.0 if np.nanmax(good, initial=0.0) > 1.0 else good
 
 
-def _turned(current: velocity.Velocity, declination: float | None) -> tuple[str, ...]:
-    """Return a notice if a current is rotated from magnetic to true north.
-
-    Raise UnreadableError if the declination is missing, or if it is given although the current is
-    relative to true north already.
-    """
+def _rotation_notice(current: velocity.Velocity, declination: float | None) -> tuple[str, ...]:
     counted = current.names if current.turn is None else current.names[1:]
     which = " and ".join(f"`{name}`" for name in counted)
     if current.magnetic and declination is None:
@@ -267,10 +259,10 @@ def _turned(current: velocity.Velocity, declination: float | None) -> tuple[str,
     )
 
 
-def _single_levels(
+def _level_dimension(
     dataset: xr.Dataset, current: velocity.Velocity, time: str | None
 ) -> tuple[str | None, xr.Dataset]:
-    """Drop dimensions of length one, and return the level dimension and the reduced dataset."""
+    """Return the level dimension, and the dataset without dimensions of length one."""
     name = current.names[0]
     single = [dim for dim, size in dataset.sizes.items() if size == 1 and dim != time]
     dataset = dataset.isel(dict.fromkeys(single, 0))
@@ -332,7 +324,8 @@ class ArrayRecord(Record):
             return self._current.flags(part(self._index, start, stop))
 
     def _window(self, start: int, stop: int) -> tuple[int, int, Levels]:
-        """Return a range of profiles that includes `start` to `stop`, and its values.
+        """Return the first and last index of a range that includes `start` to `stop`, and its
+        values.
 
         The range extends to the end of a compressed chunk, which is thus decompressed only once.
         """
@@ -347,7 +340,6 @@ class ArrayRecord(Record):
         return window
 
     def _end_of_chunk(self, start: int) -> int:
-        """Return the index of the first profile after the compressed chunk that holds `start`."""
         chunk = self._current.chunk
         if isinstance(self._index, slice):
             position = self._index.start + start * self._index.step
