@@ -17,8 +17,7 @@ _LEAST = 100.0  # smallest guessed weight in N
 
 
 def secure_anchors(design: model.ImportedDesign, output: Path) -> None:
-    """Set the weight of each anchor that has no weight in the imported file, or that the line
-    lifts.
+    """Set the weight of each anchor without a weight, and of each anchor that the line lifts.
 
     The new weight is the weight that `calm check` requires in the current of the imported file. The
     shape of the line does not depend on the anchor weight. If the line has no equilibrium, weights

@@ -43,7 +43,7 @@ class _Page:
 
 
 def mooring_text(design: model.ImportedDesign, source: str) -> tuple[str, list[model.Remark]]:
-    """Convert a design to a mooring file; return its text and the guesses that it contains."""
+    """Write a design as the text of a mooring file; also return the guesses in this file."""
     page, of = _Page(), f"{one_line(source)}, a design of {design.program}"
     page.remark(f"Imported from {of}, by CALM {__version__}, with the values of that file.")
     for note in design.notes:

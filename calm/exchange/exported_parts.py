@@ -240,7 +240,7 @@ class ExportedLine:
     def losses(self, more: Sequence[str]) -> tuple[str, ...]:
         """Return the features that the other program cannot represent.
 
-        The list has the features in `more`, followed by those in `omitted`, without repetitions.
+        The list has the features in `more`, then the features in `omitted`, without repetitions.
         """
         return tuple(dict.fromkeys((*more, *self.omitted)))
 

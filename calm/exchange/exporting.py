@@ -39,9 +39,13 @@ def export_file(
 
     Raises
     ------
-    InputError, NoEquilibrium, UsageError
-        The file has mistakes, no length can be found for a piece with fitted length, or `to` is not
-        a registered format.
+    InputError
+        The file has mistakes.
+    NoEquilibrium
+        No length can be found for a piece with fitted length, or the format needs an equilibrium
+        and the mooring has none.
+    UsageError
+        `to` is not a registered format, or the format cannot represent this kind of design.
     """
     chosen = written_format(to)
     assert chosen.write is not None

@@ -1,7 +1,8 @@
 """Run readers of foreign binary files in a separate process.
 
 The libraries that read MATLAB files and workbooks are written in C and Rust. On a damaged file they
-may crash or request all memory. This then ends only the child process, and is reported as an error.
+may crash or request all memory. Such a failure ends only the child process, and is reported as an
+error.
 """
 
 import os

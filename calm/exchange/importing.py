@@ -1,7 +1,7 @@
 """Import files of other programs: find the format, read the file, and write a mooring file.
 
-Components may be replaced by catalogue entries, and the environment by an environment file. An
-anchor without a sufficient weight gets one. The mooring file is read back as a check.
+Components may be replaced by catalogue entries, and the environment by an environment file. A
+missing or insufficient anchor weight is replaced. The mooring file is read back as a check.
 """
 
 from __future__ import annotations

@@ -65,7 +65,7 @@ class ListedInstrument:
     where : position in the list, for messages
     name, serial : name and serial number; empty if missing in the list
     nominal : nominal depth [m]; NaN if unknown
-    clock : lag of the clock [s]; None if unknown
+    clock : lag of the clock [s], negative for an early clock; None if unknown
     checked : time at which this lag was measured; None if unknown
     remark : any other error of the clock, in words
     """
@@ -94,8 +94,8 @@ def read_instrument_list(path: Path, seabed: float) -> list[ListedInstrument]:
     Raises
     ------
     InputError
-        The list cannot be read, has an unknown format, or has no instrument with a serial number,
-        or with a nominal depth and a name or a clock offset.
+        The list cannot be read, has an unknown format, or has no usable instrument. An instrument
+        needs a serial number, or a nominal depth together with a name or a clock error.
     """
     head = read_head(path, _HEAD)
     if cf_files.engine_of(path):
@@ -187,8 +187,7 @@ def _first_sheet(path: Path) -> list[NumberedLine]:
 
 
 def _of_rodb(path: Path, seabed: float) -> Iterator[ListedInstrument]:
-    """Yield the instruments in `info.dat`, with a line such as `Columns =
-    z:instrument:serialnumber`.
+    """Yield instruments from `info.dat` with a header like `Columns = z:instrument:serialnumber`.
 
     Instrument models are numbers. Clock offsets [s] apply at the end of the record (`End_Date`,
     `End_Time`).

@@ -296,7 +296,7 @@ class MatVariables(dict[str, MatValue]):
         raise ValueError(f"`{name}` holds no real numbers")
 
     def row(self, name: str) -> RealArray:
-        """Return a variable as a one-dimensional array, which is empty without real numbers."""
+        """Return the real numbers of a variable as a one-dimensional array, which may be empty."""
         try:
             return self.reals(name).ravel()
         except ValueError:

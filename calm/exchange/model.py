@@ -243,8 +243,8 @@ class ImportedDesign:
     notes : further comments at the head of the mooring file
     heading : further keys of the mooring file, as text
     in_kilograms : whether the file gives forces in kilograms-force
-    sunken : definition that replaces the uppermost component if the solution shows this component
-        to be submerged; None if the file states whether the component is submerged
+    sunken : component that replaces the uppermost component if the float is submerged in still
+        water; None if the file states whether the float is submerged
     understood : how the file was interpreted, as a text; empty if the format leaves no choice
     """
 

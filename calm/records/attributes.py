@@ -99,8 +99,8 @@ def other_frame(attributes: Mapping[Any, Any]) -> str | None:
 def moving_platform(dataset: xr.Dataset) -> str | None:
     """Return a message if a dataset comes from a moving ship, else None.
 
-    A ship is recognised by the attribute `source_program`, or by a median speed over
-    the ground that is too high for a mooring. This speed is taken from bottom track or positions.
+    A ship is recognised by the attribute `source_program`, or by a median speed over the ground
+    that is too high for a mooring. This speed is taken from bottom track or platform velocities.
     """
     program = str(dataset.attrs.get("source_program", "")).strip()
     if program.lower() in _OF_SHIPS:
@@ -150,7 +150,7 @@ def _is_magnetic_text(text: str) -> bool:
 
 
 def sense_of_direction(variable: xr.DataArray) -> str | None:
-    """Return whether a current flows ``"to"`` a direction or comes ``"from"`` it.
+    """Return ``"to"`` if a current flows to a direction, and ``"from"`` if a current comes from it.
 
     The answer is based on the long name, standard name and comment of the direction variable.
     Return None if these texts do not give the sense of the direction, or contradict each other.

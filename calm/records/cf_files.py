@@ -92,7 +92,7 @@ def is_zarr(path: Path) -> bool:
 
 @contextmanager
 def reading(path: Path) -> Iterator[None]:
-    """Convert any error that occurs while a file is read to an InputError."""
+    """Convert the errors that a faulty file causes to InputError."""
     try:
         yield
     except (CalmError, TimeChoiceError, ModuleNotFoundError):
@@ -108,7 +108,10 @@ def reading(path: Path) -> Iterator[None]:
 
 @contextmanager
 def opened(path: Path) -> Iterator[xr.Dataset]:
-    """Open a dataset; any error becomes an InputError that lists the contents of the file."""
+    """Open a dataset; any error becomes an InputError.
+
+    If the contents of the file cannot be used, the message lists the variables.
+    """
     if not path.exists():
         raise refused(path, no_such_file(path))
     if not holds_arrays(path):

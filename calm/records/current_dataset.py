@@ -40,7 +40,8 @@ class CurrentDataset:
     ----------
     times : (n,) times in file order; None for a profile without a time
     notices : remarks to read before the data are used
-    turned : notice of a rotation of the currents from magnetic to true north; empty without one
+    turned : notice that the currents were rotated from magnetic to true north; empty if they were
+        not
     rules : rules by which the file was read
     source : names of the variables, and the position of the grid column
     labels : names of the parts of a line that carry the instruments, if the levels have no depths;
@@ -287,7 +288,7 @@ def _spread(variable: xr.DataArray) -> str:
 class ArrayRecord(Record):
     """A record of profiles in NetCDF or zarr, read by the same rules as a single profile.
 
-    The parameters and the errors raised are those of `open_record`.
+    For the parameters and errors, see `open_record`.
     """
 
     def __init__(self, path: Path, terms: Terms, period: Period | None, every: int) -> None:
@@ -324,8 +325,7 @@ class ArrayRecord(Record):
             return self._current.flags(part(self._index, start, stop))
 
     def _window(self, start: int, stop: int) -> tuple[int, int, Levels]:
-        """Return the first and last index of a range that includes `start` to `stop`, and its
-        values.
+        """Return start, end and values of a range of profiles that includes `start` to `stop`.
 
         The range extends to the end of a compressed chunk, which is thus decompressed only once.
         """

@@ -1,4 +1,4 @@
-"""Sea states: spectra of the surface elevation, and their harmonic components."""
+"""Sea states and their wave spectra: named spectra, measured spectra and scatter tables."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -285,9 +285,9 @@ def _most_probable(height: float) -> SeaState:
 def measured_spectrum(path: Path) -> SeaState:
     """Read a measured spectrum from CSV, ``frequency[Hz],density[m^2/Hz]``, or from NetCDF.
 
-    A NetCDF file has the form of NDBC or WAVEWATCH III, and a single position. If it holds several
-    times, the highest sea is used. Raise InputError if the file is not a spectrum, or if its
-    frequencies do not increase.
+    A NetCDF file has the form of NDBC or WAVEWATCH III, and a single position. From a file with
+    several times, the highest sea is used. Raise InputError if the file is not a spectrum, or if
+    the frequencies do not increase.
     """
     if holds_arrays(path):
         return _sea_of(path, *_spectral_arrays(path))

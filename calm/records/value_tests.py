@@ -23,9 +23,9 @@ from calm.units import KNOT
 Times = NDArray[np.datetime64]
 
 UNCOVERED, FEW = 0.1, 25.0
-"""Share of the water depth, and depth [m].
+"""Share of the water depth, and length [m]; the larger of the two is the tolerance for levels.
 
-A profile may omit the larger of the two at either end, and a level may be as far below the seabed.
+A profile may omit this length at either end, and a level may be this far below the seabed.
 """
 WEAK = 0.03
 """Speed [m/s] that the strongest current of every record exceeds."""

@@ -216,7 +216,7 @@ class ComponentMaker:
 def counts_on_depth(value: KeyValue) -> bool:
     """True if a drag coefficient depends on depth rather than on speed.
 
-    The arguments of a table are taken to be speeds if the last argument is a realistic speed.
+    The first column of a table is read as speeds if its last value is a realistic speed.
     """
     return not value.rows or value.rows[-1][0].at() > _FASTEST
 

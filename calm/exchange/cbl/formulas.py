@@ -1,4 +1,4 @@
-"""Parse formulas of problem files to functions, which may depend on the depth `H`."""
+"""Parse the formulas of problem files into functions, which may depend on the depth `H`."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence

@@ -253,9 +253,7 @@ class CableLayout:
         self.design.lay([*last, *items, *first], upper, lower)
 
     def _end(self, at: _End) -> tuple[list[model.ImportedPiece], str, bool]:
-        """Return the pieces at an end of a leg, the key of its connection, and whether it is the
-        lower end.
-        """
+        """Return the pieces and the connection at an end of a leg; the flag marks a lower end."""
         if isinstance(at, str):
             return [], model.joined_at(at), False
         values, token = at.values, at.token

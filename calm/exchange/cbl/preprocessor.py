@@ -35,7 +35,7 @@ class _Macro:
 
 @dataclass
 class Preprocessor:
-    """Processor of comments, macros, conditions and includes that works like the C preprocessor."""
+    """Preprocessor for problem files, which works like the C preprocessor."""
 
     options: ImportOptions
     _macros: dict[str, _Macro] = field(default_factory=dict)

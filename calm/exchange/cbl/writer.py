@@ -301,7 +301,7 @@ def _windage_keys(part: ExportedPart, design: ExportedLine) -> str:
 
 
 def _drag_share(design: ExportedLine, hull: Hull, mass: float, net: float, most: float) -> float:
-    """Return the factor on a hull's drag coefficient for which the drag at its draft is CALM's.
+    """Return the factor on a hull's drag coefficient that gives the drag computed by CALM.
 
     `net` is the net buoyancy in use, and `most` the buoyancy of the whole hull [N].
     """

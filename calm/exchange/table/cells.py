@@ -385,11 +385,10 @@ def _sheets(content: bytes) -> tuple[dict[str, SheetRows], dict[str, str]]:
     }
     visible = python_calamine.SheetVisibleEnum.Visible
     whole = {each.name: "the sheet" for each in book.sheets_metadata if each.visible != visible}
-    return rows, _hidden_within(content) | whole
+    return rows, _hidden_rows_and_columns(content) | whole
 
 
-def _hidden_within(content: bytes) -> dict[str, str]:
-    """Describe the hidden rows and columns of an .xlsx file, by sheet name."""
+def _hidden_rows_and_columns(content: bytes) -> dict[str, str]:
     if not zipfile.is_zipfile(io.BytesIO(content)):
         return {}
     hidden = {}

@@ -256,9 +256,6 @@ def _has_words(below: SheetRows, index: int) -> bool:
 
 
 def _resolve_ambiguous(found: dict[str, ListColumn]) -> None:
-    """Use heights as lengths if there are no lengths, and weights as masses if there are
-    buoyancies.
-    """
     plain = {what: _plain(column.heading) for what, column in found.items()}
     tall = r"(height|hauteur|hohe|altura)\b(?!.*(bottom|btm|fond|grund|above))"
     if "length" not in found and re.match(tall, plain.get("height", "")):

@@ -1,7 +1,7 @@
 """Read element libraries, which supply values missing in a list.
 
-A library is the table of elements of Mooring Design & Dynamics, in character matrices, or a table
-or workbook whose sheets have headings.
+A library is either `mdcodes.mat` of Mooring Design & Dynamics, which has elements in character
+matrices, or a table or workbook whose sheets have headings.
 """
 
 from collections.abc import Iterable, Mapping

@@ -39,8 +39,8 @@ def read_list(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
     Raises
     ------
     InputError
-        No headings are recognised, a value is missing, or there is no anchor at either end of the
-        list.
+        No headings are recognised, a value is missing, or neither end of the list is an anchor or
+        a float.
     """
     columns, elements = options.columns, options.elements
     sheets, hidden = read_sheets(path)

@@ -1,4 +1,4 @@
-"""Read the rows of a list in SI units, with notes on how each was interpreted."""
+"""Read the rows of a list in SI units, with notes on the interpretation of each row."""
 
 import math
 import re
@@ -41,7 +41,7 @@ class ListRow:
     Attributes
     ----------
     metre : names of the values that are per metre
-    line : whether the row is a cable or chain; if None, the name decides
+    line : whether the row is a cable or chain; if None, role, kind and name decide
     hint : advice on missing values
     problems : messages about mistakes
     """
