@@ -156,8 +156,8 @@ class ImportedLeg:
     """A leg of a net.
 
     `items` are the pieces of the leg, from the upper end. `top` and `bottom` are the connections of
-    the two ends as written in a mooring file, such as ``{join: A}``. A connection is empty if the
-    file does not need it.
+    the two ends as written in a mooring file, such as ``{join: A}``. A connection that the file
+    does not need is empty.
     """
 
     name: str

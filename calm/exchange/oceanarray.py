@@ -124,7 +124,7 @@ _Location = tuple[str | int, ...]
 """Location of an item in the file: keys, and list indices."""
 
 _Found = tuple[model.ImportedComponent, str]
-"""Component found for a name, and a note on what was guessed."""
+"""Component found for a name, and a note on the guess; the note is empty without a guess."""
 
 
 @dataclass(frozen=True)

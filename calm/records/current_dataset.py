@@ -313,14 +313,14 @@ class ArrayRecord(Record):
         self._ahead: tuple[int, int, Levels] | None = None
 
     def profiles(self, start: int, stop: int) -> Levels:
-        """Return the levels of the profiles from `start` to `stop`, as `Record.profiles` does."""
+        """Return the levels of profiles `start` to `stop`; see `Record.profiles`."""
         first, _, (depth, u, v, w) = self._window(start, stop)
         mine = slice(start - first, stop - first)
         depth = depth[mine] if self._current.moves else depth
         return depth, u[mine], v[mine], None if w is None else w[mine]
 
     def flags(self, start: int, stop: int) -> NDArray[np.int8] | None:
-        """Return the quality flags of profiles `start` to `stop`, as `Record.flags` does."""
+        """Return the quality flags of profiles `start` to `stop`; see `Record.flags`."""
         with cf_files.reading(self._path):
             return self._current.flags(part(self._index, start, stop))
 

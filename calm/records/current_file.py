@@ -253,7 +253,7 @@ class CsvRecord(Record):
         return header
 
     def profiles(self, start: int, stop: int) -> Levels:
-        """Return the levels of the profiles from `start` to `stop`, as `Record.profiles` does."""
+        """Return the levels of profiles `start` to `stop`; see `Record.profiles`."""
         chosen = np.arange(len(self._times))[part(self._index, start, stop)]
         first, behind = self._first[chosen], self._first[chosen + 1]
         levels = first[:, np.newaxis] + np.arange(self._most)

@@ -218,7 +218,7 @@ START = "2026-03-01T00:00:00"
 LATITUDE, LONGITUDE = 48.3, -5.2
 
 RESOLUTION = 1e-3
-"""Resolution of the currents [m/s]; it hides differences of sines between platforms."""
+"""Resolution of the currents [m/s], which hides differences of sines between platforms."""
 
 _SEABED = 300.0
 # period [h], to the east and to the north [m/s], phase [degrees]; M2, S2, K1

@@ -1,6 +1,6 @@
 """Resolve comments, macros, conditions and included files of a problem file.
 
-Existing libraries for C preprocessing are not used: they do not limit the expansion of macros
+Existing libraries for C preprocessing are not used. They do not limit the expansion of macros
 within their arguments, they split numbers such as `6e3` if `e3` is a macro, and they accept a
 comment without an end.
 """
@@ -223,7 +223,7 @@ def _arguments(text: str, at: int) -> tuple[list[str], int]:
 def _without_comments(text: str, path: str) -> list[str]:
     """Remove comments, keeping the number of lines.
 
-    Lines joined by a backslash are moved to the first of them.
+    Lines that end in a backslash are joined with the next line, and followed by empty lines.
     """
     pieces: list[str] = []
     at = 0

@@ -291,7 +291,7 @@ class _Row:
 
 
 def is_moordyn(content: bytes) -> bool:
-    """True if a file has the two sections that every MoorDyn file must have."""
+    """True if a file has sections for line types and lines, which every MoorDyn file needs."""
     text = content.decode("latin-1").lower()
     found = {_section(line) for line in text.splitlines() if line.strip().startswith("---")}
     return b"\0" not in content and {"types", "lines"} <= found
