@@ -1,1 +1,1 @@
-"""Import of designs of other programs to mooring files, and export of mooring files to them."""
+"""Import of designs from other programs, and export of mooring files to other programs."""

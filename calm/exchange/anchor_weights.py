@@ -17,18 +17,18 @@ _LEAST = 100.0  # smallest guessed weight in N
 
 
 def secure_anchors(design: model.ImportedDesign, output: Path) -> None:
-    """Set the weight of each anchor that has no weight in the file, or that the line would lift.
+    """Set the weight of each anchor without a weight, and of each anchor that the line lifts.
 
-    The new weight is the weight that `calm check` requires in the current of the file. The shape of
-    the line does not depend on this weight. If the line has no equilibrium, weights in the file are
-    unchanged, and a missing weight is set to a value that holds any line. `output` is the path of
-    the mooring file that will be written.
+    The new weight is the weight that `calm check` requires in the current of the imported file. The
+    shape of the line does not depend on the anchor weight. If the line has no equilibrium, weights
+    in the file are unchanged, and a missing weight is set to a value that holds any line. `output`
+    is the path of the mooring file that will be written.
     """
     last = design.items if design.legs else design.items[-1:]
     anchors = [item.component for item in last if item.component.kind == "anchor"]
     if design.tow is not None or not anchors:
         return
-    for anchor, pull, required in _pulls(design, anchors, output):
+    for anchor, pull, required in _anchor_loads(design, anchors, output):
         mass, weight = anchor.figures.get("mass"), anchor.figures.get("weight")
         given = weight if weight is not None or mass is None else _IN_WATER * float(mass)
         if isinstance(given, float) and (pull is None or pull <= given):
@@ -49,10 +49,10 @@ def secure_anchors(design: model.ImportedDesign, output: Path) -> None:
         anchor.guesses["weight"] = reason
 
 
-def _pulls(
+def _anchor_loads(
     design: model.ImportedDesign, anchors: list[model.ImportedComponent], output: Path
 ) -> list[tuple[model.ImportedComponent, float | None, float]]:
-    """Return each anchor with its vertical line load and its required weight [N].
+    """Return each anchor, its vertical load and its required weight [N].
 
     The load is None if there is no equilibrium.
     """

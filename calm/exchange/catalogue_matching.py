@@ -32,12 +32,12 @@ class CatalogueMatch:
 def match_catalogue_entries(design: model.ImportedDesign) -> tuple[CatalogueMatch, ...]:
     """Replace imported components by catalogue entries with matching names and values.
 
-    An entry matches if it has the same kind, if its id and name contain at least half the words in
-    the name of the component, and if diameter, length, net buoyancy, normal drag, stiffness and
-    loads agree within `_TOLERANCE`. A value is compared only if both the entry and the component
-    have it. If both names contain a grade, the grades must agree. If several entries match, an
-    entry whose id or name equals the name of the component is preferred, then the entry with the
-    largest share of words in common with this name.
+    An entry matches if it has the same kind as the component, a similar name, and similar values.
+    The id and name of the entry must contain at least half the words in the name of the component.
+    If both names contain a grade, the grades must agree. Diameter, length, net buoyancy, normal
+    drag, stiffness and loads must agree within `_TOLERANCE`; unknown values are not compared. If
+    several entries match, an entry whose id or name equals the name of the component is preferred,
+    then the entry with the largest share of words in common with this name.
     """
     catalogue = Catalogue.load()
     entries = {id: entry for id, entry in catalogue.all().items() if isinstance(entry, Component)}
@@ -50,7 +50,7 @@ def match_catalogue_entries(design: model.ImportedDesign) -> tuple[CatalogueMatc
             id: _likeness(component.name, id, entry.name or "") for id, entry in entries.items()
         }
         for id in sorted((id for id, rank in ranks.items() if rank), key=lambda id: -ranks[id]):
-            if _agree(model, entries[id], sizeless="drag_area" in component.guesses):
+            if _values_agree(model, entries[id], sizeless="drag_area" in component.guesses):
                 component.entry = id
                 matched[id + component.name] = CatalogueMatch(component.name, id)
                 break
@@ -70,10 +70,7 @@ def _model(component: model.ImportedComponent) -> Component | None:
 
 
 def _likeness(name: str, id: str, other: str) -> float:
-    """Return the similarity of two names.
-
-    It is inf if they are equal, 0 if they do not match, and otherwise the share of common words.
-    """
+    """Return inf for equal names, 0 for different names, else the share of common words."""
     if name.casefold() in (id, other.casefold()):
         return inf
     grades = [set(_GRADE.findall(text)) for text in (name, f"{id} {other}")]
@@ -87,11 +84,7 @@ def _likeness(name: str, id: str, other: str) -> float:
     return len(shared) / len(words | others) if similar else 0.0
 
 
-def _agree(one: Component, other: Component, *, sizeless: bool) -> bool:
-    """True if two components have equal values, as far as both have values.
-
-    For `sizeless` components, only the net buoyancy is compared.
-    """
+def _values_agree(one: Component, other: Component, *, sizeless: bool) -> bool:
     pairs: list[tuple[float | None, float | None]] = [(one.net_buoyancy, other.net_buoyancy)]
     if sizeless:
         if not isinstance(other, Rigid):

@@ -11,7 +11,7 @@ _NO_IDS = {"null", "true", "false", "yes", "no", "on", "off", "y", "n"}  # other
 _SIGNS = {'"': "in ", "″": "in ", "↑": " up ", "↓": " down ", "+": " ", "&": " and ", "µ": "u"}
 
 
-def _kebab(name: str) -> str:
+def _id_from_name(name: str) -> str:
     """Convert a name to an id: ``3/8" wire rope`` becomes ``3-8in-wire-rope``."""
     text = "".join(_SIGNS.get(sign, sign) for sign in name)
     return tidy_id(re.sub(r"(?<=\d)\.(?=\d)", "p", text))[:_LONGEST].strip("-")
@@ -33,7 +33,7 @@ def ids_of(components: Iterable[ImportedComponent], taken: Iterable[str] = ()) -
             continue
         identity = component.identity()
         if identity not in known_ids:
-            base = _kebab(component.name)
+            base = _id_from_name(component.name)
             if base in _NO_IDS or not any(sign.isalpha() for sign in base):
                 base = f"{component.kind}-{base}".rstrip("-")
             chosen, number = base, 1

@@ -26,8 +26,6 @@ _FORCES = {"buoyancy", "weight"}
 
 @dataclass
 class _Page:
-    """The lines of the mooring file so far, and the guesses that their comments mention."""
-
     lines: list[str] = field(default_factory=list)
     guessed: list[model.Remark] = field(default_factory=list)
 
@@ -45,7 +43,7 @@ class _Page:
 
 
 def mooring_text(design: model.ImportedDesign, source: str) -> tuple[str, list[model.Remark]]:
-    """Convert a design to a mooring file; return its text and the guesses that it contains."""
+    """Write a design as the text of a mooring file; also return the guesses in this file."""
     page, of = _Page(), f"{one_line(source)}, a design of {design.program}"
     page.remark(f"Imported from {of}, by CALM {__version__}, with the values of that file.")
     for note in design.notes:
@@ -75,12 +73,12 @@ def mooring_text(design: model.ImportedDesign, source: str) -> tuple[str, list[m
         page.add("legs:  # each from its upper to its lower end")
     else:
         page.add("line:" + (" # from the ship down" if design.tow else " # top to bottom"))
-        for item in _counted(design.items):
+        for item in _combine_repeated(design.items):
             _write_item(page, item, ids)
     for leg in design.legs:
         page.lines += [f"  {leg.name}:", "    line:"]
         own = _Page(guessed=page.guessed)
-        for item in _counted(leg.items):
+        for item in _combine_repeated(leg.items):
             _write_item(own, item, ids)
         page.lines += [f"    {line}" for line in own.lines]
         ends = (("top", leg.top), ("bottom", leg.bottom))
@@ -101,7 +99,6 @@ def mooring_text(design: model.ImportedDesign, source: str) -> tuple[str, list[m
 
 
 def _number(value: float) -> str:
-    """Format a number with at most nine significant digits."""
     return f"{value:.9g}"
 
 
@@ -144,11 +141,9 @@ def _keyed(page: _Page, key: str, value: str, water: model.ImportedWater) -> Non
     page.add(f"  {key}: {value}", water.guesses.get(key, ""), f"environment.{key}")
 
 
-def _counted(items: list[model.ImportedPiece]) -> list[model.ImportedPiece]:
-    """Combine consecutive equal items to a single item with a count."""
-
+def _combine_repeated(items: list[model.ImportedPiece]) -> list[model.ImportedPiece]:
     def what(item: model.ImportedPiece) -> object:
-        if item.clamps or item.guess or _called(item):
+        if item.clamps or item.guess or _label_keys(item):
             return id(item)
         return item.component.identity(), item.length, item.component.entry
 
@@ -163,7 +158,7 @@ def _write_item(page: _Page, item: model.ImportedPiece, ids: dict[int, str]) -> 
         pairs.append(f"length: {_number(item.length)} m")
     if item.count > 1:
         pairs.append(f"count: {item.count}")
-    pairs += _called(item)
+    pairs += _label_keys(item)
     where = f"line.{item.label or use}"
     if not item.clamps:
         page.add(f"  - {{{', '.join(pairs)}}}", item.guess, where)
@@ -172,12 +167,12 @@ def _write_item(page: _Page, item: model.ImportedPiece, ids: dict[int, str]) -> 
     page.lines += [*(f"    {pair}" for pair in pairs[1:]), "    clamps:"]
     for clamp in item.clamps:
         clamped = ids[id(clamp.component)]
-        pairs = [f"use: {clamped}", f"at: {_number(clamp.at)} m", *_called(clamp)]
+        pairs = [f"use: {clamped}", f"at: {_number(clamp.at)} m", *_label_keys(clamp)]
         where_clamped = f"{where}.clamps.{clamp.label or clamped}"
         page.add(f"      - {{{', '.join(pairs)}}}", clamp.guess, where_clamped)
 
 
-def _called(item: model.ImportedPiece | model.ImportedClamp) -> list[str]:
+def _label_keys(item: model.ImportedPiece | model.ImportedClamp) -> list[str]:
     named = (("label", item.label), ("serial", item.serial))
     planned = item.planned_depth
     depth = [] if planned is None else [f"planned_depth: {_number(planned)} m"]

@@ -26,7 +26,7 @@ AS_A_POINT = (
 _LEAST_MASS = 0.1  # smallest mass, as a share of the net force divided by gravity
 
 Coordinates = tuple[float, float, float]
-"""East and north of the anchor, and depth [m]."""
+"""Distances east and north of the anchor, and depth [m]."""
 
 Levels = tuple[tuple[float, float, float, float, float], ...]
 """Rows of depth [m], current (east, north, up) [m/s] and density [kg/m³]."""
@@ -97,8 +97,8 @@ class ExportedPart:
 
         Parameters
         ----------
-        density : uniform density of the water in the other program [kg/m³]; with the returned area,
-            the drag in that water equals the drag of the part in its own water. By default, the
+        density : uniform density of the water in the other program [kg/m³]. The area is scaled so
+            that the drag in that water equals the drag at the depth of the part. By default, the
             area refers to reference water
         along : whether to return the tangential instead of the normal drag area
         """
@@ -199,8 +199,8 @@ class ExportedLine:
     ----------
     name : name of the file
     parts : parts of a mooring from the top down, without the anchor; or parts of a tow from the
-        ship
-    anchor : the anchor, and its weight including that of its clamps [N]; None for a tow
+        ship down
+    anchor : the anchor, and the weight in water of the anchor with its clamps [N]; None for a tow
     depth : water depth [m]
     levels : current and density at each level, from the surface down
     gravity : acceleration of gravity [m/s²]
@@ -240,7 +240,7 @@ class ExportedLine:
     def losses(self, more: Sequence[str]) -> tuple[str, ...]:
         """Return the features that the other program cannot represent.
 
-        The list has the features in `more`, followed by those in `omitted`, without repetitions.
+        The list has the features in `more`, then the features in `omitted`, without repetitions.
         """
         return tuple(dict.fromkeys((*more, *self.omitted)))
 

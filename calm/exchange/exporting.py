@@ -39,9 +39,13 @@ def export_file(
 
     Raises
     ------
-    InputError, NoEquilibrium, UsageError
-        The file has mistakes, no length can be found for a piece with fitted length, or `to` is not
-        a registered format.
+    InputError
+        The file has mistakes.
+    NoEquilibrium
+        No length can be found for a piece with fitted length, or the format needs an equilibrium
+        and the mooring has none.
+    UsageError
+        `to` is not a registered format, or the format cannot represent this kind of design.
     """
     chosen = written_format(to)
     assert chosen.write is not None
@@ -83,11 +87,10 @@ Solve = Callable[[], LegResult]
 
 
 def _exported_line(leg: Leg, solve: Solve) -> ExportedLine:
-    """Convert a mooring or a tow for export; `solve` finds its equilibrium."""
     file, water, line = leg.file, leg.water, leg.line
     if file.environment.fluid == "air":
         raise UsageError(f"{file.path} is towed in air; the other programs support only water")
-    secant = _secants(leg, solve)
+    secant = _secant_stiffness(leg, solve)
     # depth of the middle of each piece, in a tow
     depths = np.cumsum(line.length) - line.length / 2.0
     if not leg.towed:  # a mooring: heights are counted from the seabed
@@ -150,10 +153,7 @@ def _exported_line(leg: Leg, solve: Solve) -> ExportedLine:
 def _at_the_surface(
     leg: Leg, solve: Solve
 ) -> tuple[bool, tuple[float, float], tuple[float, float]]:
-    """Return `afloat`, `riding` and `windage` of `ExportedLine`.
-
-    Without an equilibrium, the line is afloat if it is at least as long as the water is deep.
-    """
+    """Return `afloat`, `riding` and `windage` of `ExportedLine`."""
     below, line = (False, (1.0, 1.0), (0.0, 1.0)), leg.line
     if leg.towed:
         return below
@@ -175,11 +175,8 @@ def _at_the_surface(
     return True, (used, seen), (area, floating.wind_cd)
 
 
-def _secants(leg: Leg, solve: Solve) -> dict[int, float]:
-    """Return the stiffness EA [N] of pieces with an elongation table, by index.
-
-    It is the secant stiffness of the table at the tension in equilibrium.
-    """
+def _secant_stiffness(leg: Leg, solve: Solve) -> dict[int, float]:
+    """Return the secant stiffness EA [N] in equilibrium, by index of the piece."""
     curves = leg.line.elongation
     if not any(curves):
         return {}
@@ -194,7 +191,6 @@ def _secants(leg: Leg, solve: Solve) -> dict[int, float]:
 
 
 def _levels(water: Water, deepest: float) -> Levels:
-    """Return rows of depth, u, v, w and density from the surface to the seabed."""
     inside = [float(depth) for depth in water.level if 0.0 < depth < deepest]
     rows = []
     for depth in (0.0, *inside, deepest):
@@ -207,7 +203,6 @@ def _levels(water: Water, deepest: float) -> Levels:
 
 
 def _omitted(leg: Leg) -> tuple[str, ...]:
-    """Return the features of a mooring file that no other program can represent."""
     file = leg.file
     omitted = ["limits of the design check; strengths, depth ratings and tilt limits of components"]
     if file.solver.strumming is not None:

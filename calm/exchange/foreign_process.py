@@ -1,7 +1,8 @@
 """Run readers of foreign binary files in a separate process.
 
 The libraries that read MATLAB files and workbooks are written in C and Rust. On a damaged file they
-may crash or request all memory. This then ends only the child process, and is reported as an error.
+may crash or request all memory. Such a failure ends only the child process, and is reported as an
+error.
 """
 
 import os
@@ -37,7 +38,7 @@ def read_apart(
     from multiprocessing import Pipe, Process
 
     here, there = Pipe(duplex=False)
-    child = Process(target=_read, args=(there, reader, given, named), daemon=True)
+    child = Process(target=_send_result, args=(there, reader, given, named), daemon=True)
     child.start()
     there.close()
     try:
@@ -59,11 +60,10 @@ def read_apart(
     return found
 
 
-def _read(
+def _send_result(
     pipe: Connection, reader: Callable[..., Any], given: tuple[Any, ...], named: dict[str, Any]
 ) -> None:
-    """Run a reader; send its result or error message, and discard its printed output."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # discard messages of the libraries
     _limit_memory()
     try:
         pipe.send((reader(*given, **named), ""))

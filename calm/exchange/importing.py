@@ -1,7 +1,7 @@
 """Import files of other programs: find the format, read the file, and write a mooring file.
 
-CALM replaces components by entries of the catalogue where possible, and adds an environment and an
-anchor that is heavy enough. The mooring file is read back as a check.
+Components may be replaced by catalogue entries, and the environment by an environment file. A
+missing or insufficient anchor weight is replaced. The mooring file is read back as a check.
 """
 
 from __future__ import annotations
@@ -106,7 +106,7 @@ def import_file(
     matched = match_catalogue_entries(design) if match_catalogue else ()
     secure_anchors(design, output)
     text, guessed = mooring_text(design, path.name)
-    _check(path, output, text)
+    _check_readable(path, output, text)
     return Imported(
         path, chosen.name, text, tuple(guessed + design.guessed),
         tuple(design.dropped), matched, design.record, design.understood,
@@ -114,10 +114,6 @@ def import_file(
 
 
 def _format_of(path: Path, name: str | None, *, listed: bool = False) -> FileFormat:
-    """Find the format of a file by a given name, or from the content of the file.
-
-    If `listed`, a file that no format recognises is read as a list.
-    """
     if name is not None:
         return _format_named(name)
     content = read_head(path, _HEAD)
@@ -144,11 +140,7 @@ def _readable() -> list[FileFormat]:
     return [each for each in file_formats() if each.read is not None]
 
 
-def _check(path: Path, output: Path, text: str) -> None:
-    """Check that `calm run` can read the new mooring file.
-
-    Mistakes are reported for the source file `path`.
-    """
+def _check_readable(path: Path, output: Path, text: str) -> None:
     try:
         read_mooring(output, text=text)
     except InputError as error:

@@ -65,7 +65,7 @@ class ListedInstrument:
     where : position in the list, for messages
     name, serial : name and serial number; empty if missing in the list
     nominal : nominal depth [m]; NaN if unknown
-    clock : lag of the clock [s]; None if unknown
+    clock : lag of the clock [s], negative for an early clock; None if unknown
     checked : time at which this lag was measured; None if unknown
     remark : any other error of the clock, in words
     """
@@ -80,7 +80,7 @@ class ListedInstrument:
 
 
 def in_words(late: float) -> str:
-    """Describe the lag of a clock [s] in words."""
+    """Describe the lag of a clock [s], such as ``3 s late``."""
     return f"{abs(late):g} s {'late' if late >= 0.0 else 'early'}"
 
 
@@ -94,8 +94,8 @@ def read_instrument_list(path: Path, seabed: float) -> list[ListedInstrument]:
     Raises
     ------
     InputError
-        The list cannot be read, has an unknown format, or has no instrument with a serial number,
-        or with a nominal depth and a name or a clock offset.
+        The list cannot be read, has an unknown format, or has no usable instrument. An instrument
+        needs a serial number, or a nominal depth together with a name or a clock error.
     """
     head = read_head(path, _HEAD)
     if cf_files.engine_of(path):
@@ -105,7 +105,7 @@ def read_instrument_list(path: Path, seabed: float) -> list[ListedInstrument]:
     elif re.search(rb"(?mi)^\s*columns\s*=.*\binstrument\b", head):
         found = [*_of_rodb(path, seabed)]
     else:
-        found = _of_table(path, seabed, _of_workbook(path) if is_workbook(head) else None)
+        found = _of_table(path, seabed, _first_sheet(path) if is_workbook(head) else None)
     found = [one for one in found if one.serial or (one.nominal == one.nominal and _says_more(one))]
     if not found:
         message = (
@@ -132,18 +132,15 @@ def _of_arrays(path: Path, seabed: float) -> Iterator[ListedInstrument]:
                 yield ListedInstrument(path.name, one.label, one.serial, one.nominal)
 
 
-def _listed(
+def _instrument_from(
     where: str,
     texts: Mapping[str, str],
     seabed: float,
     factors: Mapping[str, float] = MappingProxyType({}),
 ) -> tuple[ListedInstrument, dict[str, str]]:
-    """Build an instrument from the texts of its row.
+    """Build an instrument from texts by kind (a key of `_COLUMNS`); also return mistakes by kind.
 
-    `texts` are the texts by their kind in `_COLUMNS`, and `factors` convert their numbers to SI.
-    The lag of the clock is the value of `clock`, or the difference of the times that both clocks
-    showed. If the time of this comparison is unknown, the time of recovery is used. Also return
-    mistakes by kind.
+    `factors` convert the numbers of each kind to SI units.
     """
     figures, times, wrong = dict[str, float](), dict[str, np.datetime64](), dict[str, str]()
     compared = not all(is_gap(texts.get(kind, "")) for kind in ("clock", "true"))
@@ -161,7 +158,7 @@ def _listed(
             else:
                 figures[kind] = float(text) * factors.get(kind, 1.0)
     late, remark = figures.get("clock"), ""
-    if {"true", "own"} <= times.keys():
+    if {"true", "own"} <= times.keys():  # times that both clocks showed
         late = float((times["true"] - times["own"]) / np.timedelta64(1, "us")) / 1e6
     if constant := figures.get("constant"):
         late, remark = None, f"clock {in_words(constant)} since the deployment"
@@ -176,14 +173,13 @@ def _of_oceanarray(path: Path, seabed: float) -> Iterator[ListedInstrument]:
         texts = {kind: str(keys[key]) for key, kind in _OF_OCEANARRAY.items() if keys.get(key)}
         texts = {kind: text for kind, text in texts.items() if text != "unknown"}
         texts |= {"name": name, "serial": serial, "height": str(height)}
-        one, wrong = _listed(f"{path.name}, line {line}", texts, seabed)
+        one, wrong = _instrument_from(f"{path.name}, line {line}", texts, seabed)
         for message in wrong.values():
             raise refused(path, message, line=line)
         yield one
 
 
-def _of_workbook(path: Path) -> list[NumberedLine]:
-    """Convert the first sheet of a workbook to lines of CSV."""
+def _first_sheet(path: Path) -> list[NumberedLine]:
     rows: SheetRows = next(iter(read_sheets(path).rows.values()), [[]])
     text, width = io.StringIO(), len(rows[0])
     csv.writer(text).writerows([*row, *[""] * width][:width] for row in rows)
@@ -191,10 +187,10 @@ def _of_workbook(path: Path) -> list[NumberedLine]:
 
 
 def _of_rodb(path: Path, seabed: float) -> Iterator[ListedInstrument]:
-    """Yield the instruments in `info.dat`, such as `Columns = z:instrument:serialnumber`.
+    """Yield instruments from `info.dat` with a header like `Columns = z:instrument:serialnumber`.
 
-    Instrument models are numbers. Clock offsets [s] are those at the end of the record, `End_Date`
-    and `End_Time`.
+    Instrument models are numbers. Clock offsets [s] apply at the end of the record (`End_Date`,
+    `End_Time`).
     """
     names: list[str] = []
     header: dict[str, str] = {}
@@ -208,17 +204,16 @@ def _of_rodb(path: Path, seabed: float) -> Iterator[ListedInstrument]:
                 raise refused(
                     path, f"the row does not match the columns {':'.join(names)}", line=number
                 )
-            texts = {_kind_of(name): text for name, text in zip(names, cells, strict=True)}
+            texts = {_column_kind(name): text for name, text in zip(names, cells, strict=True)}
             texts["name"] = f"RODB {texts.get('name', '')}"
             texts["end"] = f"{header.get('end_date', '')} {header.get('end_time', '')}".strip()
-            one, wrong = _listed(f"{path.name}, line {number}", texts, seabed)
+            one, wrong = _instrument_from(f"{path.name}, line {number}", texts, seabed)
             for message in wrong.values():
                 raise refused(path, message, line=number)
             yield one
 
 
-def _kind_of(name: str) -> str:
-    """Return the kind of a column by its heading; empty if the column is not read."""
+def _column_kind(name: str) -> str:
     plain = name.strip().lower()
     return next((kind for kind, text in _COLUMNS.items() if re.fullmatch(text, plain)), "")
 
@@ -231,8 +226,8 @@ def _of_table(
     factors: dict[str, float] = {}
     for j, column in enumerate(table.header.cells):
         name, unit = heading(column)
-        whole = _kind_of(column)  # the last word of the name of a time is no unit
-        kind = whole if whole in _TIMES else _kind_of(name)
+        whole = _column_kind(column)  # the last word of the name of a time is no unit
+        kind = whole if whole in _TIMES else _column_kind(name)
         if not kind or kind in places:
             continue
         places[kind] = j
@@ -250,7 +245,7 @@ def _of_table(
     found = []
     for row in table.whole_rows(problems):
         texts = {kind: row.cells[j].strip() for kind, j in places.items()}
-        one, wrong = _listed(f"{path.name}, line {row.number}", texts, seabed, factors)
+        one, wrong = _instrument_from(f"{path.name}, line {row.number}", texts, seabed, factors)
         problems += [row.problem(message, places[kind]) for kind, message in wrong.items()]
         found.append(one)
     if problems:

@@ -79,20 +79,17 @@ def is_mat(content: bytes) -> bool:
 
 
 def _inflated(content: bytes, most: int) -> bytes:
-    """Decompress gzip content as far as possible, up to `most` bytes.
-
-    Other content is returned unchanged.
-    """
     if not content.startswith(_GZIP):
         return content
     try:
+        # unlike `gzip`, a decompressor also accepts the head of a file
         return zlib.decompressobj(wbits=31).decompress(content, most)
     except zlib.error:
         return content
 
 
 def _is_version_4(content: bytes) -> bool:
-    """True if a file begins with a MATLAB 4 header: type, rows, columns and length of a name."""
+    # the header: type, rows, columns, whether complex, and length of the name
     for order in ("<", ">"):
         head = np.frombuffer(content[:20], f"{order}i4") if len(content) > 20 else np.zeros(0)
         if head.size == 5 and 0 <= head[0] < 5000 and 1 < head[4] < 64 and head[3] in (0, 1):
@@ -141,7 +138,6 @@ def read_octave_text(text: str) -> dict[str, MatValue]:
 
 
 def _blocks(lines: list[str]) -> Iterator[tuple[str, dict[str, str], list[str]]]:
-    """Yield each variable as its name, its header, and the lines below the header."""
     name, header, rows = "", dict[str, str](), list[str]()
     for line in lines:
         key, value = _header(line)
@@ -180,7 +176,7 @@ def _value(name: str, kind: str, header: dict[str, str], rows: list[str]) -> Mat
     except ValueError:
         return None  # a structure or complex numbers, which no importer needs
     if kind.endswith("range") and len(numbers) == 3:
-        return _spread(name, *numbers.tolist())
+        return _range_numbers(name, *numbers.tolist())
     if "scalar" in kind or kind == "bool":
         return numbers[:1].reshape(1, -1)
     if "ndims" in header:
@@ -193,8 +189,8 @@ def _value(name: str, kind: str, header: dict[str, str], rows: list[str]) -> Mat
     return _shaped(name, numbers, stated, order="C")
 
 
-def _spread(name: str, first: float, last: float, step: float) -> MatValue:
-    """Return the numbers of a range, including its limit if a step ends there."""
+def _range_numbers(name: str, first: float, last: float, step: float) -> MatValue:
+    # the limit belongs to the range if a step ends there, despite rounding
     count = (last - first) / step * (1 + 1e-12) + 1 if step else 0.0
     if not 0.0 <= count <= _MOST:
         raise ValueError(f"the range `{name}` has {count:g} numbers, too many to read")
@@ -219,25 +215,21 @@ def _texts(rows: list[str]) -> list[MatValue]:
 
 
 def _is_hdf5(content: bytes) -> bool:
-    """True if a file is HDF5, by the signature at its start or after a MATLAB header."""
-    return _SIGNATURE in (content[:8], content[512:520])
+    return _SIGNATURE in (content[:8], content[512:520])  # MATLAB has a header of 512 bytes
 
 
 def _read_hdf5(content: bytes, wanted: Collection[str]) -> dict[str, MatValue]:
-    """Read the wanted variables of an HDF5 file; links to other files are not followed."""
     import h5py
 
     with h5py.File(io.BytesIO(content), "r") as file:
         links = {name: file.get(name, getlink=True) for name in wanted}
+        # links to other files are not followed
         hard = [name for name, link in links.items() if isinstance(link, h5py.HardLink)]
         return {name: _variable(file, file[name], 0) for name in hard}
 
 
 def _variable(file: Any, node: Any, depth: int) -> MatValue:
-    """Read a dataset as written by MATLAB, or a group as written by Octave.
-
-    Cell arrays are read recursively.
-    """
+    """Read a dataset as written by MATLAB, or a group as written by Octave."""
     import h5py
 
     if depth > _DEEPEST:
@@ -258,7 +250,6 @@ def _variable(file: Any, node: Any, depth: int) -> MatValue:
 
 
 def _values(file: Any, node: Any, kind: str, depth: int) -> MatValue:
-    """Read the values of a dataset, whose dimensions HDF5 stores in reverse order."""
     import h5py
 
     if not isinstance(node, h5py.Dataset) or node.is_virtual or node.external:
@@ -270,8 +261,8 @@ def _values(file: Any, node: Any, kind: str, depth: int) -> MatValue:
     if node.dtype == h5py.ref_dtype:
         return [_variable(file, file[each], depth + 1) for each in np.asarray(value).ravel()]
     if node.dtype.names == ("base", "limit", "increment"):
-        return _spread(node.name, *(float(value[name]) for name in node.dtype.names))
-    array = np.asarray(value).T
+        return _range_numbers(node.name, *(float(value[name]) for name in node.dtype.names))
+    array = np.asarray(value).T  # HDF5 stores the dimensions in reverse order
     if kind in _TEXTS:
         rows = np.atleast_2d(array)
         if array.dtype.kind == "i":
@@ -305,7 +296,7 @@ class MatVariables(dict[str, MatValue]):
         raise ValueError(f"`{name}` holds no real numbers")
 
     def row(self, name: str) -> RealArray:
-        """Return a variable as a one-dimensional array, which is empty without real numbers."""
+        """Return the real numbers of a variable as a one-dimensional array, which may be empty."""
         try:
             return self.reals(name).ravel()
         except ValueError:
@@ -318,7 +309,7 @@ class MatVariables(dict[str, MatValue]):
 
 
 def _fits(name: str, shape: tuple[int, ...]) -> bool:
-    """Return True, but raise ValueError if a variable of this shape is too large."""
+    """Return True; raise ValueError if a variable of this shape is too large."""
     if math.prod(shape) > _MOST:
         raise ValueError(f"`{name}` has {math.prod(shape)} elements, too many to read")
     return True

@@ -156,8 +156,8 @@ class ImportedLeg:
     """A leg of a net.
 
     `items` are the pieces of the leg, from the upper end. `top` and `bottom` are the connections of
-    the two ends as written in a mooring file, such as ``{join: A}``. A connection is empty if the
-    file does not need it.
+    the two ends as written in a mooring file, such as ``{join: A}``. A connection that the file
+    does not need is empty.
     """
 
     name: str
@@ -167,7 +167,7 @@ class ImportedLeg:
 
 
 def held_at(depth: float, east: float, north: float) -> str:
-    """Return the connection of a leg end that is held at a depth and a position [m].
+    """Return the mooring-file text for a leg end that is held in place.
 
     Parameters
     ----------
@@ -178,7 +178,7 @@ def held_at(depth: float, east: float, north: float) -> str:
 
 
 def anchored_at(east: float, north: float, depth: float | None = None) -> str:
-    """Return the connection of the lower end of a leg with an anchor.
+    """Return the mooring-file text for the lower end of a leg with an anchor.
 
     Parameters
     ----------
@@ -190,7 +190,7 @@ def anchored_at(east: float, north: float, depth: float | None = None) -> str:
 
 
 def joined_at(node: str) -> str:
-    """Return the connection of a leg end that joins other legs at a node."""
+    """Return the mooring-file text for a leg end that joins other legs at a node."""
     return f"{{join: {node}}}"
 
 
@@ -232,7 +232,8 @@ class ImportedDesign:
     Attributes
     ----------
     program : the program that wrote the file
-    items : pieces of a mooring from the top down, of a tow from the ship, or of a net leg by leg
+    items : pieces of a mooring from the top down, of a tow from the ship down, or of a net leg by
+        leg
     legs : the legs of a net
     water : the environment; None if the file has none
     environment : lines of the `environment` key that replaces `water`
@@ -242,8 +243,8 @@ class ImportedDesign:
     notes : further comments at the head of the mooring file
     heading : further keys of the mooring file, as text
     in_kilograms : whether the file gives forces in kilograms-force
-    sunken : definition that replaces the uppermost component if the solution shows this component
-        to be submerged; None if the file states whether the component is submerged
+    sunken : component that replaces the uppermost component if the float is submerged in still
+        water; None if the file states whether the float is submerged
     understood : how the file was interpreted, as a text; empty if the format leaves no choice
     """
 

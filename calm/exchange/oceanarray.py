@@ -74,15 +74,15 @@ def read_oceanarray(path: Path, options: model.ImportOptions) -> model.ImportedD
         reading.refuse((), f"has more than {model.MOST_PIECES} pieces")
     if problems:
         raise InputError(problems)
-    parts = _Parts(reading, options.defines, library)
+    parts = _ComponentFinder(reading, options.defines, library)
     design = model.ImportedDesign(
         "oceanarray", str(document.data.get("name") or path.stem), [], None
     )
-    _hang(beside, _strung(line, parts, design), parts)
+    _clamp_instruments(beside, _lay_line(line, parts, design), parts)
     design.water = model.ImportedWater(
         depth, guesses={"current": "the file has no current; still water is assumed"}
     )
-    design.heading = _heading(reading)
+    design.heading = _position_and_ship(reading)
     if problems:
         raise InputError(sorted(problems, key=lambda problem: problem.line))
     return design
@@ -124,17 +124,15 @@ _Location = tuple[str | int, ...]
 """Location of an item in the file: keys, and list indices."""
 
 _Found = tuple[model.ImportedComponent, str]
-"""Component found for a name, and a note on what was guessed."""
+"""Component found for a name, and a note on the guess; the note is empty without a guess."""
 
 
 @dataclass(frozen=True)
 class _Entry:
     """An item in the file; heights are above the seabed [m].
 
-    `place` is the location of the item in the file. `names` are the names by which to find its
-    component, the most specific first, and `instrument` is oceanarray's word for the kind of
-    instrument. At most one of `middle`, `bottom` and `top` is given. `item` has all keys of the
-    item.
+    `names` are the names by which to find the component, the most specific first. `instrument` is
+    oceanarray's word for the kind of instrument. `item` has all keys of the item.
     """
 
     place: _Location
@@ -151,17 +149,14 @@ class _Entry:
 
     @property
     def height(self) -> float | None:
-        """Height of the middle, bottom or top of the item, as specified in the file [m]."""
         given = (self.middle, self.bottom, self.top)
         return next((one for one in given if one is not None), None)
 
     @property
     def is_anchor(self) -> bool:
-        """Whether the entry is an anchor."""
         return is_called(" ".join(self.names), "anchor")
 
     def lower_end(self, extent: float) -> float | None:
-        """Return the height of the lower end of the item [m], if its length is `extent`."""
         if self.is_anchor:
             return 0.0
         if self.bottom is not None:
@@ -173,18 +168,14 @@ class _Entry:
 
 @dataclass
 class _Reading:
-    """Reader of the items of a file; mistakes are added to `problems`."""
-
     document: Document
     problems: list[Problem]
     depth: float | None = None
 
     def refuse(self, place: _Location, message: str) -> None:
-        """Add a problem at a position of the file."""
         self.problems.append(self.document.problem(place, message))
 
     def metres(self, item: Mapping[str, Any], place: _Location, key: str) -> float | None:
-        """Return the length or height at a key of an item [m]; None if it is missing or wrong."""
         if item.get(key) is None:
             return None
         found = number(str(item[key]))
@@ -198,7 +189,6 @@ class _Reading:
             return None
 
     def entries(self, key: str) -> list[_Entry]:
-        """Return the items of a list from the top down."""
         items: Any = self.document.data.get(key) or []
         if not isinstance(items, list):
             self.refuse((key,), f"`{key}` must be a list")
@@ -206,6 +196,7 @@ class _Reading:
         read = (self._entry(item, (key, index)) for index, item in enumerate(items))
         found = [entry for entry in read if entry is not None]
         ends = [entry.height for entry in found if entry.height is not None]
+        # return the items from the top down
         rising = len(ends) > 1 and ends[0] < ends[-1]
         return found[::-1] if rising or (found and found[0].is_anchor) else found
 
@@ -234,25 +225,18 @@ class _Reading:
 
 
 @dataclass
-class _Parts:
-    """Finder of components by name, in the user's definitions, the library, or the catalogue."""
-
+class _ComponentFinder:
     reading: _Reading
     stands_for: Mapping[str, str]
     library: Library
     catalogue: Catalogue = field(default_factory=Catalogue.load)
     _known: dict[tuple[str, ...], _Found | None] = field(default_factory=dict)
 
-    def of(self, entry: _Entry) -> _Found | None:
-        """Find the component of an item, and return it with a note on guesses.
-
-        If there is no such component, record a mistake and return None.
-        """
+    def find(self, entry: _Entry) -> _Found | None:
         message = f"neither the library nor the catalogue has `{entry.names[0]}`"
         return self._named(entry.names, entry.instrument, entry.place, message)
 
-    def rope(self, entry: _Entry, between: str) -> _Found | None:
-        """Find the rope that is inserted below an item, and return it with a note on guesses."""
+    def find_rope(self, entry: _Entry, between: str) -> _Found | None:
         return self._named((ROPE,), "", entry.place, f"no line is listed {between}")
 
     def _named(
@@ -306,7 +290,7 @@ class _Parts:
 
 
 @dataclass(frozen=True)
-class _Strung:
+class _LaidLine:
     """Pieces of a line from the anchor up, with heights of their lower ends [m].
 
     `nominal` are the heights in the file, and `height` are the heights computed from the lengths.
@@ -317,8 +301,9 @@ class _Strung:
     height: list[float]
 
 
-def _strung(line: list[_Entry], parts: _Parts, design: model.ImportedDesign) -> _Strung:
-    """Add the line to the design from the anchor up, with ropes inserted between pieces."""
+def _lay_line(
+    line: list[_Entry], parts: _ComponentFinder, design: model.ImportedDesign
+) -> _LaidLine:
     items: list[model.ImportedPiece] = []
     nominal, height = [0.0], [0.0]  # lower ends; the last value is that of the next piece
     if not line[-1].is_anchor:
@@ -336,7 +321,7 @@ def _strung(line: list[_Entry], parts: _Parts, design: model.ImportedDesign) -> 
         height.append(height[-1] + extent)
 
     for entry in reversed(line):
-        found = parts.of(entry)
+        found = parts.find(entry)
         if found is None:
             continue
         component, guess = found
@@ -352,7 +337,7 @@ def _strung(line: list[_Entry], parts: _Parts, design: model.ImportedDesign) -> 
             gap = lower - nominal[-1]
             if gap > _CLOSE and not roped:
                 between = f"between {below} and `{entry.label}`, {gap:.6g} m above it"
-                if (rope := parts.rope(entry, between)) is not None:
+                if (rope := parts.find_rope(entry, between)) is not None:
                     piece = model.ImportedPiece(
                         rope[0], gap, guess="the length follows from the heights in the file"
                     )
@@ -384,17 +369,16 @@ def _strung(line: list[_Entry], parts: _Parts, design: model.ImportedDesign) -> 
     for item in items:
         item.label *= labels.count(item.label) == 1
     design.items = items[::-1]
-    return _Strung(items, nominal, height)
+    return _LaidLine(items, nominal, height)
 
 
-def _hang(beside: list[_Entry], strung: _Strung, parts: _Parts) -> None:
-    """Clamp the instruments on the cables at their heights, or at the nearest end of a cable."""
+def _clamp_instruments(beside: list[_Entry], strung: _LaidLine, parts: _ComponentFinder) -> None:
     lines = [i for i, one in enumerate(strung.items) if one.component.kind in FLEXIBLE_KINDS]
     if beside and not lines and not parts.reading.problems:
         parts.reading.refuse(("inline",), "has no line to clamp instruments on")
     nominal, height = np.array(strung.nominal), np.array(strung.height)
     for entry in beside:
-        found, wanted = parts.of(entry), entry.height
+        found, wanted = parts.find(entry), entry.height
         if wanted is None:
             message = f"`{entry.label}` needs `hab`, its height above the bottom"
             parts.reading.refuse(entry.place, message)
@@ -411,8 +395,7 @@ def _hang(beside: list[_Entry], strung: _Strung, parts: _Parts) -> None:
         host.clamp(found[0], round(at, 3), guess, f"{entry.label} {wanted:g}", entry.serial)
 
 
-def _heading(reading: _Reading) -> dict[str, str]:
-    """Return further keys of the mooring file: position, ship and cruise."""
+def _position_and_ship(reading: _Reading) -> dict[str, str]:
     data, lines = reading.document.data, dict[str, str]()
     for name in _PLACES:
         keys = [f"{name}_{what}".lstrip("_") for what in ("latitude", "longitude")]

@@ -124,7 +124,7 @@ def file_format(name: str) -> FileFormat:
         The module of the format cannot be imported, or does not register a format of that name.
     """
     if name not in _registered:
-        module = _OWN[name] if name in _OWN else _added()[name]
+        module = _OWN[name] if name in _OWN else _added_modules()[name]
         try:
             import_module(module)
         except Exception as error:
@@ -147,14 +147,13 @@ def file_formats() -> tuple[FileFormat, ...]:
     CalmError
         As in `file_format`.
     """
-    for name in (*_added(), *_OWN):
+    for name in (*_added_modules(), *_OWN):
         file_format(name)
     others = sorted(_registered.keys() - _OWN.keys())
     return tuple(_registered[name] for name in (*others, *_OWN))
 
 
-def _added() -> dict[str, str]:
-    """Return the modules of the formats that other packages add, by name."""
+def _added_modules() -> dict[str, str]:
     added = {entry.name: entry.module for entry in entry_points(group=ENTRY_POINTS)}
     if taken := sorted(added.keys() & _OWN.keys()):
         raise CalmError(

@@ -1,7 +1,7 @@
 """Attributes with a defined meaning: CF standard names, cell methods, coordinate frames and north.
 
-CALM does not interpret free text (titles, comments, long names). The card of `calm.records.card`
-quotes it for the reader.
+This module reads long names and comments only to find the reference north and the sense of a
+direction. Other free text, such as a title, is quoted on the card of `calm.records.card`.
 """
 
 from __future__ import annotations
@@ -99,8 +99,8 @@ def other_frame(attributes: Mapping[Any, Any]) -> str | None:
 def moving_platform(dataset: xr.Dataset) -> str | None:
     """Return a message if a dataset comes from a moving ship, else None.
 
-    A ship is recognised by the attribute `source_program`, or by a median speed over
-    the ground that is too high for a mooring. This speed is taken from bottom track or positions.
+    A ship is recognised by the attribute `source_program`, or by a median speed over the ground
+    that is too high for a mooring. This speed is taken from bottom track or platform velocities.
     """
     program = str(dataset.attrs.get("source_program", "")).strip()
     if program.lower() in _OF_SHIPS:
@@ -125,16 +125,15 @@ def is_magnetic(variable: xr.DataArray, dataset: Mapping[Any, Any] = MappingProx
     attribute of the variable or dataset such as `magnetic_declination_applied: no`.
     """
     own = f"{variable.name} {words_of(variable, *_NORTH_IN)}"
-    return _is_magnetic_text(own) or "magnetic" in _norths(variable, dataset)
+    return _is_magnetic_text(own) or "magnetic" in _stated_norths(variable, dataset)
 
 
 def is_true(variable: xr.DataArray, dataset: Mapping[Any, Any] = MappingProxyType({})) -> bool:
     """Return whether attributes state that directions are relative to true north."""
-    return "true" in _norths(variable, dataset)
+    return "true" in _stated_norths(variable, dataset)
 
 
-def _norths(variable: xr.DataArray, dataset: Mapping[Any, Any]) -> Iterator[str]:
-    """Yield ``"magnetic"`` or ``"true"`` for each attribute that states the reference north."""
+def _stated_norths(variable: xr.DataArray, dataset: Mapping[Any, Any]) -> Iterator[str]:
     for name, value in (*variable.attrs.items(), *dataset.items()):
         text = str(value)
         if _UNTURNED.fullmatch(str(name)):
@@ -151,7 +150,7 @@ def _is_magnetic_text(text: str) -> bool:
 
 
 def sense_of_direction(variable: xr.DataArray) -> str | None:
-    """Return whether a current flows ``"to"`` a direction or comes ``"from"`` it.
+    """Return ``"to"`` if a current flows to a direction, and ``"from"`` if a current comes from it.
 
     The answer is based on the long name, standard name and comment of the direction variable.
     Return None if these texts do not give the sense of the direction, or contradict each other.

@@ -1,7 +1,7 @@
 """Summary card of a file: its texts, variables, levels, times, flags and declination.
 
-The user reads the card to confirm that the file is the intended one. It quotes texts verbatim and
-gives values in their declared units.
+The user reads the card to confirm that the file is the intended one. The card quotes texts verbatim
+and gives values in their declared units.
 """
 
 from __future__ import annotations

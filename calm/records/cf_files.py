@@ -92,7 +92,7 @@ def is_zarr(path: Path) -> bool:
 
 @contextmanager
 def reading(path: Path) -> Iterator[None]:
-    """Convert any error that occurs while a file is read to an InputError."""
+    """Convert the errors that a faulty file causes to InputError."""
     try:
         yield
     except (CalmError, TimeChoiceError, ModuleNotFoundError):
@@ -108,7 +108,10 @@ def reading(path: Path) -> Iterator[None]:
 
 @contextmanager
 def opened(path: Path) -> Iterator[xr.Dataset]:
-    """Open a dataset; any error becomes an InputError that lists the contents of the file."""
+    """Open a dataset; any error becomes an InputError.
+
+    If the contents of the file cannot be used, the message lists the variables.
+    """
     if not path.exists():
         raise refused(path, no_such_file(path))
     if not holds_arrays(path):
@@ -140,17 +143,13 @@ def open_current(path: Path) -> xr.Dataset:
 
 
 def _refuse_large(path: Path, engine: str) -> None:
-    """Raise UnreadableError if a variable has more values than may be read at once.
-
-    The check reads only the declared shapes: one-dimensional variables are read whole, others chunk
-    by chunk. Classic NetCDF files need no check, as their size limits the number of values.
-    """
-
     def check(name: str, array: Any) -> None:
+        # one-dimensional variables are read whole, others chunk by chunk
         shape = getattr(array, "shape", None) or ()
         at_once = shape if len(shape) < 2 else getattr(array, "chunks", None) or ()
         _refuse_many(name, prod(at_once))
 
+    # a classic NetCDF file needs no check, because its size limits the number of values
     if engine == "zarr":
         import zarr
 
@@ -258,7 +257,7 @@ def refuse_other_salinity(variable: xr.DataArray) -> None:
 
 
 def first_present(dataset: xr.Dataset, names: Iterable[str]) -> list[str]:
-    """Return those of the names that are variables of the dataset, in order, without duplicates."""
+    """Return the names that are variables of the dataset, in order, without duplicates."""
     return [name for name in dict.fromkeys(names) if name in dataset.variables]
 
 
@@ -411,7 +410,7 @@ def _decoded(times: xr.DataArray) -> NDArray[Any]:
     except (ValueError, OverflowError):
         raise refusal from None
     if decoded.dtype.kind != "M":
-        raise _no_date(times) if decoded.dtype.kind == "O" else refusal
+        raise _no_date_error(times) if decoded.dtype.kind == "O" else refusal
     known = decoded[~np.isnat(decoded)]
     first, last = np.datetime64(_FIRST), np.datetime64(_LAST)
     if known.size and not first <= known.min() <= known.max() < last:
@@ -419,8 +418,7 @@ def _decoded(times: xr.DataArray) -> NDArray[Any]:
     return decoded
 
 
-def _no_date(times: xr.DataArray) -> UnreadableError:
-    """Build the error for times with a valid unit but values outside the supported years."""
+def _no_date_error(times: xr.DataArray) -> UnreadableError:
     values = times.values.ravel()
     worst = values[np.nanargmax(np.abs(values - np.nanmedian(values)))]
     return UnreadableError(

@@ -31,7 +31,7 @@ SAMPLED = 64_000_000
 
 
 class CurrentDataset:
-    """A dataset of currents in which velocity, levels, times and place have been identified.
+    """A dataset of currents in which velocity, levels, times and position have been identified.
 
     Values of the current are read later. The constructor raises UnreadableError if no current can
     be read; the message gives the reason and the contents of the file.
@@ -40,7 +40,8 @@ class CurrentDataset:
     ----------
     times : (n,) times in file order; None for a profile without a time
     notices : remarks to read before the data are used
-    turned : notice of a rotation of the currents from magnetic to true north; empty without one
+    turned : notice that the currents were rotated from magnetic to true north; empty if they were
+        not
     rules : rules by which the file was read
     source : names of the variables, and the position of the grid column
     labels : names of the parts of a line that carry the instruments, if the levels have no depths;
@@ -55,7 +56,7 @@ class CurrentDataset:
         self._terms = terms
         self._velocity = current = velocity.find_velocity(dataset, regular=is_regular(dataset))
         velocity.refuse_ragged(dataset, current.names[0])
-        self.turned = _turned(current, terms.declination)
+        self.turned = _rotation_notice(current, terms.declination)
         clock = cf_files.find_times(dataset, current.names[0])
         self.times = None if clock is None else cf_files.read_times(dataset, clock)
         self._time = None if clock is None else next(map(str, dataset[clock].dims), None)
@@ -65,7 +66,7 @@ class CurrentDataset:
             self.labels = cf_files.labels_along(dataset, along[0]) or ()
         if not self.labels:
             column = choose_column(dataset, current.names, self._time, terms.place)
-            level, dataset = _single_levels(dataset.isel(column.index), current, self._time)
+            level, dataset = _level_dimension(dataset.isel(column.index), current, self._time)
             self._levels = find_levels(dataset, level, self._time, terms.water_depth)
         self.source, notices = {"velocity": ", ".join(current.all_names)}, [*column.notes]
         if self._levels is not None:
@@ -166,7 +167,7 @@ class CurrentDataset:
                 index = index[::sparse]
             times = every[::sparse]
         summaries = {}
-        for taken, (variable, _) in zip(self._taken, self._parts, strict=False):
+        for taken, (variable, _) in zip(self._roles, self._parts, strict=False):
             values = self._along(variable, index, lambda one: one.values.astype(np.float64))
             low, high = cf_files.valid_range(variable)
             outside = (values < low) | (values > high)
@@ -214,18 +215,14 @@ class CurrentDataset:
         return card, [*notes, *current_doubts(values)]
 
     @property
-    def _taken(self) -> tuple[str, ...]:
-        """Roles of the variables of the current, in their order."""
+    def _roles(self) -> tuple[str, ...]:
         components = self._velocity.turn is None
         return ("east", "north", "up") if components else ("speed", "direction", "up")
 
     def _along(
         self, variable: xr.DataArray, index: Any, read: Callable[[xr.DataArray], Any]
     ) -> Any:
-        """Read a variable as a contiguous array of times by levels.
-
-        Contiguity makes sums over equal values equal to the last bit.
-        """
+        """Read a variable as a contiguous array (times, levels)."""
         like = self._parts[0][0]
         if set(variable.dims) != set(like.dims):
             variable = variable.broadcast_like(like)
@@ -233,6 +230,7 @@ class CurrentDataset:
             return read(variable).reshape(1, -1)
         levels = [dim for dim in like.dims if dim != self._time]
         values = read(variable.isel({self._time: index}).transpose(self._time, *levels))
+        # contiguous, so that sums over equal values are equal to the last bit
         return values.reshape(len(values), -1)
 
 
@@ -241,12 +239,7 @@ def share_of(good: Floats) -> Floats:
     return good / 100.0 if np.nanmax(good, initial=0.0) > 1.0 else good
 
 
-def _turned(current: velocity.Velocity, declination: float | None) -> tuple[str, ...]:
-    """Return a notice if a current is rotated from magnetic to true north.
-
-    Raise UnreadableError if the declination is missing, or if it is given although the current is
-    relative to true north already.
-    """
+def _rotation_notice(current: velocity.Velocity, declination: float | None) -> tuple[str, ...]:
     counted = current.names if current.turn is None else current.names[1:]
     which = " and ".join(f"`{name}`" for name in counted)
     if current.magnetic and declination is None:
@@ -267,10 +260,10 @@ def _turned(current: velocity.Velocity, declination: float | None) -> tuple[str,
     )
 
 
-def _single_levels(
+def _level_dimension(
     dataset: xr.Dataset, current: velocity.Velocity, time: str | None
 ) -> tuple[str | None, xr.Dataset]:
-    """Drop dimensions of length one, and return the level dimension and the reduced dataset."""
+    """Return the level dimension, and the dataset without dimensions of length one."""
     name = current.names[0]
     single = [dim for dim, size in dataset.sizes.items() if size == 1 and dim != time]
     dataset = dataset.isel(dict.fromkeys(single, 0))
@@ -295,7 +288,7 @@ def _spread(variable: xr.DataArray) -> str:
 class ArrayRecord(Record):
     """A record of profiles in NetCDF or zarr, read by the same rules as a single profile.
 
-    The parameters and the errors raised are those of `open_record`.
+    For the parameters and errors, see `open_record`.
     """
 
     def __init__(self, path: Path, terms: Terms, period: Period | None, every: int) -> None:
@@ -320,19 +313,19 @@ class ArrayRecord(Record):
         self._ahead: tuple[int, int, Levels] | None = None
 
     def profiles(self, start: int, stop: int) -> Levels:
-        """Return the levels of the profiles from `start` to `stop`, as `Record.profiles` does."""
+        """Return the levels of profiles `start` to `stop`; see `Record.profiles`."""
         first, _, (depth, u, v, w) = self._window(start, stop)
         mine = slice(start - first, stop - first)
         depth = depth[mine] if self._current.moves else depth
         return depth, u[mine], v[mine], None if w is None else w[mine]
 
     def flags(self, start: int, stop: int) -> NDArray[np.int8] | None:
-        """Return the quality flags of profiles `start` to `stop`, as `Record.flags` does."""
+        """Return the quality flags of profiles `start` to `stop`; see `Record.flags`."""
         with cf_files.reading(self._path):
             return self._current.flags(part(self._index, start, stop))
 
     def _window(self, start: int, stop: int) -> tuple[int, int, Levels]:
-        """Return a range of profiles that includes `start` to `stop`, and its values.
+        """Return start, end and values of a range of profiles that includes `start` to `stop`.
 
         The range extends to the end of a compressed chunk, which is thus decompressed only once.
         """
@@ -347,7 +340,6 @@ class ArrayRecord(Record):
         return window
 
     def _end_of_chunk(self, start: int) -> int:
-        """Return the index of the first profile after the compressed chunk that holds `start`."""
         chunk = self._current.chunk
         if isinstance(self._index, slice):
             position = self._index.start + start * self._index.step

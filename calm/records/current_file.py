@@ -102,13 +102,12 @@ def _from_arrays(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTab
         elif time is not None:
             raise TimeChoiceError("the file has no times")
         chosen = slice(index, index + 1)
-        table = _profile(current.read(chosen), terms, notices)
+        table = _valid_levels(current.read(chosen), terms, notices)
         card, doubts = current.inspected(path.name, chosen)
         return replace(table, card=card), [*notices, *doubts]
 
 
-def _profile(found: Levels, terms: Terms, notices: list[str]) -> CurrentTable:
-    """Return the levels below the surface that have a value, sorted by depth."""
+def _valid_levels(found: Levels, terms: Terms, notices: list[str]) -> CurrentTable:
     depth, u, v, up = found
     up = np.zeros_like(u) if up is None else up
     depth, u, v, w = (values.ravel() for values in (depth, u, v, up))
@@ -138,7 +137,7 @@ def _from_text(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable
     table = read_table(path, EXAMPLE)
     header, rows, notices = CurrentHeader(table.header), table.rows, list[str]()
     if header.timed:
-        rows, notices = _rows_of(rows, time)
+        rows, notices = _rows_nearest(rows, time)
     elif time is not None:
         raise TimeChoiceError("the file has no column `time`")
     problems: list[Problem] = []
@@ -159,10 +158,9 @@ def _from_text(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable
     return CurrentTable(columns[0], columns[1], columns[2], columns[3], card=card), notices
 
 
-def _rows_of(rows: Sequence[CellRow], time: str | None) -> tuple[list[CellRow], list[str]]:
-    """Return the rows of the time nearest to the requested time, and a notice if they differ."""
+def _rows_nearest(rows: Sequence[CellRow], time: str | None) -> tuple[list[CellRow], list[str]]:
     problems: list[Problem] = []
-    moments = np.array([_moment_of(row, problems) for row in rows], "datetime64[us]")
+    moments = np.array([_time_of_row(row, problems) for row in rows], "datetime64[us]")
     if problems:
         raise InputError(abridged(problems))
     times = np.unique(moments)
@@ -171,8 +169,7 @@ def _rows_of(rows: Sequence[CellRow], time: str | None) -> tuple[list[CellRow], 
     return [rows[i] for i in chosen], [notice] if notice else []
 
 
-def _moment_of(row: CellRow, problems: list[Problem]) -> np.datetime64 | None:
-    """Return the time of a row; if it has none, add a mistake to `problems` and return None."""
+def _time_of_row(row: CellRow, problems: list[Problem]) -> np.datetime64 | None:
     try:
         return current_terms.parse_time(row.cells[0])
     except TimeChoiceError as error:
@@ -183,8 +180,7 @@ def _moment_of(row: CellRow, problems: list[Problem]) -> np.datetime64 | None:
 class CsvRecord(Record):
     """A record in CSV, read once into memory.
 
-    The parameters and the errors raised are those of `open_record`. An error lists all mistakes of
-    the file.
+    For the parameters and errors, see `open_record`. An error lists all mistakes of the file.
     """
 
     def __init__(self, path: Path, terms: Terms, period: Period | None, every: int) -> None:
@@ -240,14 +236,14 @@ class CsvRecord(Record):
             begins = [
                 i for i, row in enumerate(rows) if not i or row.cells[0] != rows[i - 1].cells[0]
             ]
-            moments = [_moment_of(rows[i], problems) for i in begins]
+            moments = [_time_of_row(rows[i], problems) for i in begins]
             times += [each for each in moments if each is not None]
             sizes = np.diff([*begins, len(rows)])
             which = np.repeat(np.arange(len(begins)), sizes)
             parts.append(header.currents(rows, problems, self._terms, which))
             counts += sizes.tolist()
-            _refuse(problems, header, at_least=delimited.MOST_PROBLEMS)
-        _refuse(problems, header)
+            _refuse_mistakes(problems, header, at_least=delimited.MOST_PROBLEMS)
+        _refuse_mistakes(problems, header)
         self._times = np.array(times, "datetime64[ns]")
         self._first = np.concatenate([[0], np.cumsum(counts, dtype=np.int64)])
         self._most = max(counts, default=0)
@@ -257,7 +253,7 @@ class CsvRecord(Record):
         return header
 
     def profiles(self, start: int, stop: int) -> Levels:
-        """Return the levels of the profiles from `start` to `stop`, as `Record.profiles` does."""
+        """Return the levels of profiles `start` to `stop`; see `Record.profiles`."""
         chosen = np.arange(len(self._times))[part(self._index, start, stop)]
         first, behind = self._first[chosen], self._first[chosen + 1]
         levels = first[:, np.newaxis] + np.arange(self._most)
@@ -275,7 +271,6 @@ class CsvRecord(Record):
 def _card_of(
     header: CurrentHeader, values: CurrentValues, times: NDArray[np.datetime64], terms: Terms
 ) -> ReadCard:
-    """Return the card of a CSV file, with the comments above its header as text."""
     with header.row.path.open("rb") as file:
         above = (line.decode(errors="replace").strip() for line in islice(file, header.row.number))
         comment = " ".join(line.lstrip("# ") for line in above if line.startswith("#"))
@@ -299,10 +294,7 @@ def _card_of(
 
 
 def _whole_profiles(lines: Iterable[NumberedLine], header: CellRow) -> Iterator[list[CellRow]]:
-    """Yield rows in batches of at least `AT_ONCE`, without splitting a profile.
-
-    Adjacent rows with the same time form a profile.
-    """
+    """Yield rows in batches of at least `AT_ONCE`, without splitting a profile."""
     gathered: list[CellRow] = []
     for _, rows in groupby((header.below(*line) for line in lines), lambda row: row.cells[0]):
         gathered += rows
@@ -313,8 +305,7 @@ def _whole_profiles(lines: Iterable[NumberedLine], header: CellRow) -> Iterator[
         yield gathered
 
 
-def _refuse(problems: list[Problem], header: CurrentHeader, *, at_least: int = 0) -> None:
-    """Raise InputError if there are more than `at_least` mistakes, or if any is in the header."""
+def _refuse_mistakes(problems: list[Problem], header: CurrentHeader, *, at_least: int = 0) -> None:
     in_header = [problem for problem in problems if problem.line == header.row.number]
     if in_header:
         raise InputError(abridged(in_header))

@@ -352,10 +352,7 @@ def abridged(problems: list[Problem]) -> list[Problem]:
 
 
 def _content(lines: Iterable[NumberedLine]) -> Iterator[NumberedLine]:
-    """Yield the lines that are not empty.
-
-    A quoted cell that spans several lines becomes a single line.
-    """
+    """Yield the lines that are neither empty nor comments; lines of one quoted cell are joined."""
     begun: list[NumberedLine] = []
     for number, line in lines:
         if not begun and (not line.strip() or line.lstrip().startswith("#")):

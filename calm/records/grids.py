@@ -1,4 +1,4 @@
-"""Gridded data at a position: the nearest column of currents with water, and the seabed depth.
+"""Gridded data at a position: the nearest water column with a current, and the seabed depth.
 
 Seabed depths may come from GEBCO, EMODnet or a survey.
 """
@@ -81,9 +81,9 @@ def choose_column(
     import xarray as xr
 
     dims = dataset[velocity[0]].dims
-    pair = _positions(dataset, set(dims) - {time})
+    pair = _position_variables(dataset, set(dims) - {time})
     if pair is None:
-        return GridColumn({}, None, _drift(dataset, time, wanted))
+        return GridColumn({}, None, _drift_notices(dataset, time, wanted))
     latitude, longitude = pair
     horizontal = [str(dim) for dim in dims if dim in latitude.dims or dim in longitude.dims]
     if not all(set(horizontal) <= set(dataset[name].dims) for name in velocity):
@@ -99,7 +99,7 @@ def choose_column(
             f"{_span(latitude.values, longitude.values)}; select "
             "one with `--at LAT,LON` or the `position` of the mooring file"
         )
-    box = _box(latitude, longitude, horizontal, wanted)
+    box = _indices_around(latitude, longitude, horizontal, wanted)
     near = dataset[list(velocity)].isel(box)
     spread = xr.broadcast(*(near[str(one.name)] for one in pair))
     lat, lon = (one.transpose(*horizontal).values.astype(np.float64) for one in spread)
@@ -110,7 +110,7 @@ def choose_column(
             f"{written(wanted)} is outside the grid of the file, "
             f"{_span(latitude.values, longitude.values)}"
         )
-    wet = _wet(near, velocity, time, horizontal)
+    wet = _columns_with_current(near, velocity, time, horizontal)
     if not wet.any():
         raise cf_files.UnreadableError(
             f"no water column around {written(wanted)} contains a current (columns searched: "
@@ -141,8 +141,9 @@ def _named(dataset: xr.Dataset, coordinate: str) -> list[str]:
     return cf_files.first_present(dataset, names)
 
 
-def _positions(dataset: xr.Dataset, dims: set[Any]) -> tuple[xr.DataArray, xr.DataArray] | None:
-    """Return the latitude and longitude variables over the given dimensions, or None."""
+def _position_variables(
+    dataset: xr.Dataset, dims: set[Any]
+) -> tuple[xr.DataArray, xr.DataArray] | None:
     found = []
     for coordinate in _PLACES:
         named = [dataset[name] for name in _named(dataset, coordinate)]
@@ -155,10 +156,9 @@ def _positions(dataset: xr.Dataset, dims: set[Any]) -> tuple[xr.DataArray, xr.Da
     return found[0], found[1]
 
 
-def _box(
+def _indices_around(
     latitude: xr.DataArray, longitude: xr.DataArray, horizontal: list[str], wanted: Place
 ) -> dict[str, NDArray[Any]]:
-    """Return the indices of the grid points around a position, by dimension."""
     if len(horizontal) == 1:  # a list of places, in any order
         return {horizontal[0]: np.arange(latitude.sizes[horizontal[0]])}
     north = latitude.values.astype(np.float64) - wanted[0]
@@ -178,29 +178,23 @@ def _box(
 def _nearest(away: Floats) -> NDArray[Any]:
     """Return the indices, in axis order, of the points of an axis nearest to a position.
 
-    There are up to ``2 REACH + 1`` of them. On a longitude axis around the globe they may include
-    both ends.
-
-    Parameters
-    ----------
-    away : (n,) signed distances of the points from the position [degrees]
+    The number of points is at most ``2 REACH + 1``. On a longitude axis around the globe, they may
+    include both ends. `away` has the signed distances from the position [degrees].
     """
     near = np.argsort(np.abs(away), kind="stable")[: 2 * REACH + 1]
     return near[np.argsort(away[near], kind="stable")]
 
 
-def _wet(
+def _columns_with_current(
     near: xr.Dataset, velocity: tuple[str, str], time: str | None, horizontal: list[str]
 ) -> NDArray[Any]:
-    """Return a mask of the columns with a nonzero current, as some models have zeros on land.
-
-    The first, middle and last times are tested, as any one time may be a gap.
-    """
     if time in near.dims:
         count = near.sizes[time]
+        # any one time may be a gap
         near = near.isel({time: sorted({0, count // 2, count - 1})})
     near = near[list(velocity)].load()
     first, second = (near[name] for name in velocity)
+    # some models have zeros on land
     moving = first.notnull() & second.notnull() & ((first != 0) | (second != 0))
     others = [dim for dim in moving.dims if dim not in horizontal]
     return np.asarray(moving.any(others).transpose(*horizontal).values)
@@ -228,8 +222,7 @@ def _spacing(latitude: NDArray[Any], longitude: NDArray[Any], at: tuple[Any, ...
     return float(np.nanmax(kilometres_from(latitude[around], longitude[around], place)))
 
 
-def _drift(dataset: xr.Dataset, time: str | None, wanted: Place | None) -> tuple[str, ...]:
-    """Return notices about a record whose position changes with time, such as a drifter's."""
+def _drift_notices(dataset: xr.Dataset, time: str | None, wanted: Place | None) -> tuple[str, ...]:
     found = []
     for coordinate in _PLACES:
         moving = [name for name in _named(dataset, coordinate) if dataset[name].dims == (time,)]

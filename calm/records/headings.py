@@ -91,7 +91,7 @@ def column_unit(
 
 
 def is_time(column: str) -> bool:
-    """Return whether a heading is that of the time column."""
+    """Return whether a heading marks the time column."""
     return heading(column)[0].lower() == "time"
 
 
@@ -257,7 +257,7 @@ def read_time_columns(path: Path, dimensions: Sequence[str], example: str) -> Ti
             problems.append(row.problem(str(error), 0))
         for k, (j, (name, factor, quantity)) in enumerate(columns.items()):
             try:
-                values[i, k] = _number_of(row.cells[j], factor, quantity)
+                values[i, k] = _si_value(row.cells[j], factor, quantity)
             except QuantityError as error:
                 problems.append(row.problem(about_quantity(name, row.cells[j], error), j))
     if problems:
@@ -268,11 +268,7 @@ def read_time_columns(path: Path, dimensions: Sequence[str], example: str) -> Ti
     return TimeColumns(times[order], labels, kinds, values[order])
 
 
-def _number_of(cell: str, factor: float, quantity: QuantityRange) -> float:
-    """Convert a cell to SI, or a gap to NaN.
-
-    Raise QuantityError if the cell is not a quantity.
-    """
+def _si_value(cell: str, factor: float, quantity: QuantityRange) -> float:
     if delimited.NUMBER.fullmatch(cell):
         return float(cell) * factor
     if delimited.is_gap(cell) or cell.lower().lstrip("+-") in _INFINITE:

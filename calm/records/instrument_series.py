@@ -299,8 +299,6 @@ _FEWEST = 6  # a series of zeros alone is a fault from this length on
 
 @dataclass(frozen=True)
 class _SeriesFile:
-    """A dataset of instruments, with its file name and the options of `read_series`."""
-
     dataset: xr.Dataset
     name: str
     flags: frozenset[int]
@@ -308,7 +306,6 @@ class _SeriesFile:
     usual: float
 
     def series(self, name: str) -> list[InstrumentSeries]:
-        """Return the series of a quantity, one per instrument; empty if the file lacks it."""
         dataset, quantity = self.dataset, QUANTITIES_MEASURED[name]
         current = self._velocity(quantity) if quantity.dimension == "speed" else None
         if current is not None:
@@ -369,7 +366,6 @@ class _SeriesFile:
         return found.values[0], []
 
     def _median_pressure(self, found: Readings) -> float:
-        """Return the median pressure of a single-instrument file [dbar]; NaN without pressures."""
         names = named(self.dataset, *PRESSURE)[:1]
         if found.along is not None or not names:
             return float("nan")
@@ -393,10 +389,7 @@ class _SeriesFile:
         return current
 
     def _bins(self, along: str, time: str) -> Floats:
-        """Return the depths of a profiler's bins relative to the instrument [m], positive below.
-
-        Raise UnreadableError if the dimension does not hold bins.
-        """
+        """Return the depths of a profiler's bins relative to the instrument [m], positive below."""
         levels = find_levels(self.dataset, along, time, self.seabed)
         if levels.instrument is None or time in levels.variable.dims:
             raise UnreadableError(
@@ -456,7 +449,6 @@ _FRESH = 5.0
 
 
 def _salinity_notes(salinity: Floats, taken: Mapping[str, str]) -> Iterator[str]:
-    """Yield remarks on the computed salinity, and any doubt about the unit of conductivity."""
     if not np.isfinite(salinity).any():
         yield "salinity is not computed, because there is neither a pressure nor a nominal depth"
         return

@@ -90,7 +90,7 @@ def _dataset(
     latitude: float = math.nan,
     serial: str = "",
 ) -> xr.Dataset:
-    """Build a dataset from columns, whose keys are (quantity, unit)."""
+    """Build a dataset from columns by (quantity, unit)."""
     import cf_xarray  # noqa: F401  (gives datasets their `cf`)
     import xarray as xr
 
@@ -111,7 +111,11 @@ def _dataset(
     if "DEPTH" in dataset:
         dataset["DEPTH"].attrs.update(down)
     elif "UCUR" in dataset:
-        dataset["INSTRUMENT_DEPTH"] = "TIME", _depths(columns, len(time), nominal, latitude), down
+        dataset["INSTRUMENT_DEPTH"] = (
+            "TIME",
+            _instrument_depths(columns, len(time), nominal, latitude),
+            down,
+        )
     if math.isfinite(nominal):
         dataset["NOMINAL_DEPTH"] = (), nominal, {**down, "long_name": "nominal depth"}
     if serial:
@@ -119,10 +123,9 @@ def _dataset(
     return dataset
 
 
-def _depths(
+def _instrument_depths(
     columns: dict[tuple[str, str], Floats], count: int, nominal: float, latitude: float
 ) -> Floats:
-    """Convert pressures to depths [m], and gaps to the nominal depth."""
     import gsw
 
     pressure = columns.get(("pressure", "dbar"), np.full(count, np.nan))
@@ -145,7 +148,7 @@ def _rodb(path: Path) -> xr.Dataset:
     names = header["columns"].upper().split(":")
     if not set(_DATE[:3]) <= set(names):
         raise refused(path, "`Columns` must contain YY, MM and DD", line=first)
-    values = _numbers(path, lines, first, len(names))
+    values = _number_rows(path, lines, first, len(names))
     of = dict(zip(names, values.T, strict=True))
     year, month, day = (of[name].astype(np.int64) for name in _DATE[:3])
     months = (year - 1970).astype("M8[Y]").astype("M8[M]") + (month - 1)
@@ -173,7 +176,7 @@ def _cnv(path: Path) -> xr.Dataset:
     names = {int(one[1]): (one[2], one[3]) for one in map(_CNV_NAME.match, lines[:first]) if one}
     if not names:
         raise refused(path, "the header names no columns")
-    values = _numbers(path, lines, first, len(names))
+    values = _number_rows(path, lines, first, len(names))
     columns: dict[tuple[str, str], Floats] = {}
     for j, (name, title) in names.items():
         unit = _CNV_UNIT.search(title)
@@ -206,19 +209,19 @@ def _cnv(path: Path) -> xr.Dataset:
 
 
 def _rbr(path: Path) -> xr.Dataset:
-    """Read a table written by RSKtools, whose `pressure` includes air pressure."""
     lines = _lines(path)
     first = sum(1 for line in lines if line.startswith("//") or not line.strip())
     head = next((line for line in lines[:first][::-1] if line.startswith("// timestamp")), "")
     titles = [re.fullmatch(r"\s*(\w+?)\((.*)\)\s*", name) for name in head.split(",")[1:]]
     moments = [line.partition(",")[0].strip() for line in lines[first:]]
-    values = _numbers(path, [line.partition(",")[2] for line in lines], first, len(titles))
+    values = _number_rows(path, [line.partition(",")[2] for line in lines], first, len(titles))
     try:
         time = np.array(moments, "M8[us]")
     except ValueError:
         raise refused(path, "has a row without a time", line=first + 1) from None
     of = {one[1]: (one[2], values[:, j]) for j, one in enumerate(titles) if one}
     if "sea_pressure" in of or "pressure" in of:
+        # `pressure` of RSKtools includes the pressure of the air
         of["pressure"] = of.get("sea_pressure") or ("dbar", of["pressure"][1] - AIR)
     columns = {
         (name, {"PSU": "1"}.get(unit, "degC" if unit.endswith("°C") else unit)): one
@@ -254,8 +257,7 @@ def read_plain_table(path: Path) -> xr.Dataset:
     return _dataset(path, table.time.astype("M8[us]"), columns)
 
 
-def _numbers(path: Path, lines: Sequence[str], first: int, count: int) -> Floats:
-    """Convert the non-empty lines from `first` on to an array with `count` columns."""
+def _number_rows(path: Path, lines: Sequence[str], first: int, count: int) -> Floats:
     there = [i for i in range(first, len(lines)) if lines[i].strip()]
     rows, problems = [], []
     for i in there:

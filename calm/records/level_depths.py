@@ -126,8 +126,6 @@ def find_levels(
 
 @dataclass(frozen=True)
 class _Levels:
-    """A level variable, and the context needed to find its zero and direction."""
-
     dataset: xr.Dataset
     variable: xr.DataArray
     factor: float
@@ -135,7 +133,6 @@ class _Levels:
     water_depth: float
 
     def placed(self) -> LevelDepths:
-        """Return the levels relative to the surface, the seabed or the instrument."""
         levels, name = self.variable, self.variable.name
         if _MODEL_COORDINATE.fullmatch(str(levels.attrs.get("standard_name", ""))):
             raise UnreadableError(
@@ -180,12 +177,6 @@ class _Levels:
         return int((values > 0).any()) - int((values < 0).any())
 
     def _from_instrument(self, orientation: str) -> LevelDepths:
-        """Return levels that are counted from an instrument looking up or down.
-
-        MHKiT adds the height of the instrument above the seabed to `range` if the user supplies
-        this height. For an instrument that looks down, MHKiT adds its depth instead, and stores the
-        water depth as `depth`.
-        """
         name, factor = self.variable.name, self.factor if orientation == "down" else -self.factor
         if orientation not in ("up", "down"):
             raise UnreadableError(
@@ -193,8 +184,11 @@ class _Levels:
                 "instrument looks up or down; set the attribute `positive: up` of the variable, or "
                 "`orientation: up` of the file (or `down`)"
             )
-        instrument, water = self._depths()
-        # for Teledyne instruments, the offset is that of the head
+        instrument, water = self._instrument_and_water_depths()
+        # MHKiT adds the height of the instrument above the seabed to `range` if the user supplies
+        # this height. For an instrument that looks down, MHKiT adds the depth of the instrument
+        # instead, and stores the water depth as `depth`. For Teledyne instruments, the offset is
+        # the offset of the head.
         attributes = self.dataset.attrs
         by_hand = any(attributes.get(each) for each in ("range_offset", "h_deploy"))
         offset = by_hand and "rdi" not in str(attributes.get("inst_make", "")).lower()
@@ -216,7 +210,6 @@ class _Levels:
         return LevelDepths(self.variable, factor, 0.0, zero, (note,))
 
     def _stated_orientation(self, words: str) -> str:
-        """Return the stated orientation of an instrument, ``"up"`` or ``"down"``, else ""."""
         for word, orientation in (("above", "up"), ("below", "down")):
             if word in words.split():
                 return orientation
@@ -227,8 +220,7 @@ class _Levels:
             return ""
         return "up" if up else "down"
 
-    def _depths(self) -> tuple[_Depth | None, _Depth | None]:
-        """Return the depths of the instrument and of the water, each None if unknown."""
+    def _instrument_and_water_depths(self) -> tuple[_Depth | None, _Depth | None]:
         found: dict[bool, _Depth] = {}
         standard = self.dataset.cf.standard_names.get(_STANDARD_DEPTH, [])
         for name in first_present(self.dataset, [*standard, *_NAMES, "depth_avg"]):

@@ -81,12 +81,9 @@ def profile_doubts(depth: Floats, u: Floats, v: Floats, water_depth: float) -> I
 
 
 def _reversed_levels(depth: Floats, speed: Floats, toward: Floats) -> Iterator[str]:
-    """Yield a remark on each level whose current opposes the currents above and below.
-
-    Its speed must lie between theirs. A real undercurrent is usually slower or faster than both.
-    """
     for i in range(1, len(depth) - 1):
         three = speed[i - 1 : i + 2]
+        # the speed must be between the other two; an undercurrent is usually slower or faster
         if three.min() < _LEAST_REVERSED or not three[0] >= three[1] >= three[2]:
             continue
         across = [_between(toward[i], toward[j]) for j in (i - 1, i + 1)]

@@ -63,7 +63,7 @@ def read_columns(
     of rows in which a value may be missing.
     """
     columns, rows = table.columns, table.rows
-    units = _read_headings(table, known)
+    units = _unit_by_column(table, known)
     if len(units) == len(columns) and "depth" not in units:
         table.refuse(("columns",), "the table has no `depth` column")
     values = {name: np.full(len(rows), np.nan) for name in units}
@@ -89,7 +89,7 @@ def read_columns(
             values[name][whole] = together
             continue
         quantity = known[name]
-        if not unit and DIMENSIONS[quantity.dimension].unit and _bare(cells):
+        if not unit and DIMENSIONS[quantity.dimension].unit and _has_bare_numbers(cells):
             try:
                 column_unit(columns[j], "", [quantity.dimension], quantity.usual_unit or "")
             except QuantityError as error:  # report once per column
@@ -105,8 +105,7 @@ def read_columns(
     return values
 
 
-def _bare(cells: Sequence[str | None]) -> bool:
-    """Return whether at least two cells are nonzero numbers without a unit."""
+def _has_bare_numbers(cells: Sequence[str | None]) -> bool:
     numbers = (cell for cell in cells if cell is not None and _BARE_NUMBER.fullmatch(cell))
     return sum(any(digit in "123456789" for digit in number) for number in numbers) > 1
 
@@ -116,7 +115,7 @@ def _read_together(
 ) -> Floats | None:
     """Convert a column to SI; None if a cell is not a plain number within the limits.
 
-    In the rows of the mask `gaps`, a value may be missing.
+    `gaps` is a mask of rows in which a value may be missing.
     """
     numbers = plain_numbers(cells) if unit else None
     if numbers is None or (np.isnan(numbers) & ~gaps).any():
@@ -126,8 +125,7 @@ def _read_together(
     return None if (beyond | (numbers > quantity.at_most)).any() else numbers
 
 
-def _read_headings(table: QuantityTable, known: Mapping[str, QuantityRange]) -> dict[str, str]:
-    """Return the unit of each known column by name; empty if the heading has no unit."""
+def _unit_by_column(table: QuantityTable, known: Mapping[str, QuantityRange]) -> dict[str, str]:
     units: dict[str, str] = {}
     for j, column in enumerate(table.columns):
         name, unit = heading(column)
@@ -394,7 +392,7 @@ def read_water(
     table : table with the column `depth`, and either `density` or `temperature` and `salinity`
     density : plausible range of the density
     """
-    values = _by_depth(table, {**_WATER, "density": density})
+    values = _profile_by_name(table, {**_WATER, "density": density})
     if values is None:
         return None
     if "density" in values:
@@ -407,17 +405,13 @@ def read_profile(name: str, table: QuantityTable) -> DepthTable | None:
 
     If the table has mistakes, they are added to its `problems`, and None is returned.
     """
-    values = _by_depth(table, {"depth": _DEPTH, name: _WATER[name]})
+    values = _profile_by_name(table, {"depth": _DEPTH, name: _WATER[name]})
     return None if values is None else values[name]
 
 
-def _by_depth(
+def _profile_by_name(
     table: QuantityTable, known: Mapping[str, QuantityRange]
 ) -> dict[str, DepthTable] | None:
-    """Return the known quantities of a table by name, each as a profile.
-
-    If the table has mistakes, they are added to its `problems`, and None is returned.
-    """
     before = len(table.problems)
     values = read_columns(table, known)
     given = values.keys() - {"depth"}

@@ -32,7 +32,7 @@ REACH = "1678-01-01", "2261-12-31T23:59:59.999999"
 _PART_OF_A_DATE = re.compile(r"\d{4}(-\d\d(-\d\d)?)?")
 
 Levels = tuple[Floats, Floats, Floats, Floats | None]
-"""Depth, u, v and w of profiles, in the layout of `solve_profiles`."""
+"""Depth, u, v and w of profiles, with the shapes that `Record.profiles` returns."""
 
 RULES = (
     "levels without a current or a depth are excluded from their profile",
@@ -104,7 +104,7 @@ def parse_period(text: str) -> Period:
     first, slash, last = text.partition("/")
     if not slash:
         raise UsageError(f"`{text[:40]}` is not a period; write 2026-03-01/2026-03-31T12:00")
-    start, stop = _end(first, whole=False), _end(last, whole=True)
+    start, stop = _end_of_period(first, whole=False), _end_of_period(last, whole=True)
     if start is not None and stop is not None and stop < start:
         raise UsageError(f"the period `{text[:60]}` ends before it begins")
     return start, stop
@@ -189,24 +189,22 @@ def part(index: Index, start: int, stop: int) -> Index:
     return slice(index.start + start * index.step, index.start + stop * index.step, index.step)
 
 
-def _end(text: str, *, whole: bool) -> np.datetime64 | None:
-    """Parse one end of a period to datetime64[ns]; None if it is open."""
+def _end_of_period(text: str, *, whole: bool) -> np.datetime64 | None:
     text = text.strip()
     if text in ("", ".."):
         return None
     try:
         if _PART_OF_A_DATE.fullmatch(text):
             date: Any = np.datetime64(text) + int(whole)  # adds one year, month or day
-            return _in_reach(date.astype("M8[us]")) - np.timedelta64(int(whole), "ns")
-        return _in_reach(parse_time(text))
+            return _within_reach(date.astype("M8[us]")) - np.timedelta64(int(whole), "ns")
+        return _within_reach(parse_time(text))
     except TimeChoiceError as error:
         raise UsageError(str(error)) from None
     except ValueError:
         raise UsageError(f"`{text}` is not a date") from None
 
 
-def _in_reach(moment: np.datetime64) -> np.datetime64:
-    """Convert a time to nanoseconds, limited to the range `REACH`."""
+def _within_reach(moment: np.datetime64) -> np.datetime64:
     first, last = (np.datetime64(end, "us") for end in REACH)
     near: Any = min(max(moment, first), last)
     return np.datetime64(near, "ns")
@@ -220,7 +218,7 @@ START = "2026-03-01T00:00:00"
 LATITUDE, LONGITUDE = 48.3, -5.2
 
 RESOLUTION = 1e-3
-"""Resolution of the currents [m/s], too coarse to show platform differences in sines."""
+"""Resolution of the currents [m/s], which hides differences of sines between platforms."""
 
 _SEABED = 300.0
 # period [h], to the east and to the north [m/s], phase [degrees]; M2, S2, K1
@@ -275,7 +273,7 @@ def made_record() -> bytes:
 
 
 def _currents(hours: Any) -> tuple[Any, Any]:
-    """Return the eastward and northward currents [m/s], as times by levels."""
+    """Return the eastward and northward currents, each (times, levels) [m/s]."""
     hours = hours[:, np.newaxis].astype(np.float64)
     depth = np.array(DEPTHS)
     # slower near the seabed: 1/7 power law of the height

@@ -1,4 +1,4 @@
-"""Sea states: spectra of the surface elevation, and their harmonic components."""
+"""Sea states and their wave spectra: named spectra, measured spectra and scatter tables."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -17,10 +17,10 @@ from calm.records.delimited import read_table
 Density = Callable[[Floats], Floats]
 
 SPECTRA = ("bretschneider", "jonswap", "pierson-moskowitz", "ochi-hubble")
-"""Spectra by name."""
+"""Names of the spectra."""
 
 OF_HEIGHT = ("pierson-moskowitz", "ochi-hubble")
-"""Spectra determined by the significant height alone."""
+"""Names of the spectra that follow from the significant height alone."""
 
 STEEPEST = 1.0 / 7.0
 """Ratio of height to length of a breaking wave (Michell 1893); seas are far below it."""
@@ -31,7 +31,7 @@ HIGHEST, LONGEST_PERIOD = 30.0, 30.0
 BETWEEN = 0.5, 12.0
 """Frequency range of the solution, as multiples of the peak frequency.
 
-Outside it, a Bretschneider spectrum has less than 1e-4 of its variance.
+Outside this range, a Bretschneider spectrum has less than 1e-4 of its variance.
 """
 
 UNSEEN = 1e-3
@@ -205,7 +205,6 @@ def spectrum_of(kind: str, height: float, period: float | None, gamma: float = 3
 
 
 def _impossible(height: float, period: float) -> str | None:
-    """Return a message if a height [m] and peak period [s] are impossible or unsupported."""
     length, waves = 9.80665 * period**2 / (2.0 * pi), f"waves of {height:.3g} m and {period:.3g} s"
     if height > HIGHEST or period > LONGEST_PERIOD:
         return (
@@ -244,7 +243,7 @@ def with_swell(sea: SeaState, height: float, period: float) -> SeaState:
 
     The swell has the narrow spectrum of Ochi and Hubble with λ = 3, and the variances are added.
     Raise UsageError if the swell is higher, longer or steeper than any real swell, or if its period
-    is shorter than that of the sea.
+    is not longer than the peak period of the sea.
     """
     spectrum_of("bretschneider", height, period, 1.0)
     if period <= sea.peak_period:
@@ -268,8 +267,8 @@ def _together(first: Density, second: Density, omega: Floats) -> Floats:
 def _most_probable(height: float) -> SeaState:
     """Return the most probable sea state of Ochi and Hubble (1976) for a significant height [m].
 
-    It consists of a swell and a wind sea. The constants are from secondary sources, not from the
-    original article. Raise UsageError if the height exceeds that of any real sea.
+    The sea state consists of a swell and a wind sea. The constants are from secondary sources, not
+    from the original article.
     """
     if height > HIGHEST:
         raise UsageError(
@@ -286,13 +285,13 @@ def _most_probable(height: float) -> SeaState:
 def measured_spectrum(path: Path) -> SeaState:
     """Read a measured spectrum from CSV, ``frequency[Hz],density[m^2/Hz]``, or from NetCDF.
 
-    A NetCDF file has the form of NDBC or WAVEWATCH III, and a single position. If it holds several
-    times, the highest sea is used. Raise InputError if the file is not a spectrum, or if its
-    frequencies do not increase.
+    A NetCDF file has the form of NDBC or WAVEWATCH III, and a single position. From a file with
+    several times, the highest sea is used. Raise InputError if the file is not a spectrum, or if
+    the frequencies do not increase.
     """
     if holds_arrays(path):
         return _sea_of(path, *_spectral_arrays(path))
-    rows = _figures(path, ("frequency[Hz]", "density[m^2/Hz]"))
+    rows = _numbered_rows(path, ("frequency[Hz]", "density[m^2/Hz]"))
     frequency, density = np.array([row for _, row in rows]).reshape(-1, 2).T
     return _sea_of(path, frequency, density, [line for line, _ in rows])
 
@@ -379,7 +378,7 @@ def scatter_states(path: Path, kind: str, gamma: float = 3.3) -> list[SeaState]:
     The columns are ``significant_wave_height[m],peak_period[s],share``; the column `share` may also
     hold counts. Raise InputError if the table has mistakes; the error lists all of them.
     """
-    rows = _figures(path, ("significant_wave_height[m]", "peak_period[s]", "share"))
+    rows = _numbered_rows(path, ("significant_wave_height[m]", "peak_period[s]", "share"))
     if kind == "ochi-hubble":
         raise UsageError(
             "the ochi-hubble spectrum has its own periods and cannot use those of a scatter table"
@@ -410,8 +409,7 @@ def scatter_states(path: Path, kind: str, gamma: float = 3.3) -> list[SeaState]:
     return states
 
 
-def _figures(path: Path, names: tuple[str, ...]) -> list[tuple[int, tuple[float, ...]]]:
-    """Return the line number and the values of the named columns of each row."""
+def _numbered_rows(path: Path, names: tuple[str, ...]) -> list[tuple[int, tuple[float, ...]]]:
     example = ",".join(names)
     table = read_table(path, example)
     header = [cell.strip() for cell in table.header.cells]

@@ -23,9 +23,9 @@ from calm.units import KNOT
 Times = NDArray[np.datetime64]
 
 UNCOVERED, FEW = 0.1, 25.0
-"""Share of the water depth, and depth [m].
+"""Share of the water depth, and length [m]; the larger of the two is the tolerance for levels.
 
-A profile may omit the larger of the two at either end, and a level may be as far below the seabed.
+A profile may omit this length at either end, and a level may be this far below the seabed.
 """
 WEAK = 0.03
 """Speed [m/s] that the strongest current of every record exceeds."""
@@ -83,7 +83,7 @@ def current_doubts(found: CurrentValues) -> Iterator[str]:
     yield from strength_doubts(levels[there], speed.max(axis=0)[there], found.water_depth)
     yield from sector_doubts(found.u[known], found.v[known])
     for values, side in ((found.u[known], "east"), (found.v[known], "north")):
-        yield from _recurring(values, side)
+        yield from _recurring_extremes(values, side)
     yield from _component_doubts(found.u, found.v)
     if found.good is not None:
         poor = known & (found.good < 0.5)
@@ -206,8 +206,7 @@ def sector_doubts(u: Floats, v: Floats) -> Iterator[str]:
         )
 
 
-def _recurring(values: Floats, side: str) -> Iterator[str]:
-    """Yield a doubt if the largest value [m/s] recurs and far exceeds all other values."""
+def _recurring_extremes(values: Floats, side: str) -> Iterator[str]:
     largest = np.abs(values).max(initial=0.0)
     filled = np.abs(values) == largest
     others = values[~filled]
@@ -220,7 +219,6 @@ def _recurring(values: Floats, side: str) -> Iterator[str]:
 
 
 def _component_doubts(u: Floats, v: Floats) -> Iterator[str]:
-    """Yield doubts about currents (n, k) [m/s] with a missing, equal or zero component."""
     known = np.isfinite(u) & np.isfinite(v)
     one_alone = int((np.isfinite(u) != np.isfinite(v)).sum())
     if one_alone >= _FEWEST:
@@ -240,7 +238,6 @@ def _component_doubts(u: Floats, v: Floats) -> Iterator[str]:
 
 
 def _equal_levels(u: Floats, v: Floats) -> Iterator[str]:
-    """Yield a doubt if adjacent levels of currents (n, k) are equal at all times."""
     if len(u) < MANY or u.shape[1] < 2:
         return
     same = ((u[:, 1:] == u[:, :-1]) & (v[:, 1:] == v[:, :-1])).all(axis=0)
@@ -259,7 +256,7 @@ def _turned_levels(depth: Floats, current: NDArray[np.complex128]) -> Iterator[s
 
     Parameters
     ----------
-    depth : (k,) rising [m]
+    depth : (k,) increasing depths [m]
     current : (n, k) eastward (real) and northward (imaginary) component [m/s]; NaN in gaps
     """
     turned = []
@@ -456,10 +453,6 @@ def _gaps(times: Times) -> Iterator[str]:
 
 
 def _unchanged(values: Floats, times: Times, names: Sequence[str]) -> Iterator[str]:
-    """Yield a doubt about series with values that hardly change.
-
-    Such a series keeps one value for a tenth of the record, or mostly repeats values.
-    """
     same: NDArray[np.bool_] = np.all(values[1:] == values[:-1], axis=2)
     known: NDArray[np.bool_] = np.all(np.isfinite(values), axis=2)
     fewest = max(_FEWEST, UNCHANGED * len(times))
@@ -486,7 +479,6 @@ def _unchanged(values: Floats, times: Times, names: Sequence[str]) -> Iterator[s
 
 
 def _interleaved(values: Floats) -> Iterator[str]:
-    """Yield a doubt if every second reading of a series repeats, as if two series were mixed."""
     if len(values) < MANY:
         return
     next_one, second = (

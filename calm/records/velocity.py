@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class _Sought:
-    """Standard names of a quantity, and its usual names in programs and archives."""
-
     standard: tuple[str, ...]
     usual: tuple[str, ...]
 
@@ -118,7 +116,7 @@ def find_velocity(dataset: xr.Dataset, *, regular: bool) -> Velocity:
     if reason is not None:
         raise UnreadableError(f"its current {reason}")
     notes: list[str] = []
-    east, north, up = (_find(dataset, one, regular, notes) for one in (_EAST, _NORTH, _UP))
+    east, north, up = (_find_variable(dataset, one, regular, notes) for one in (_EAST, _NORTH, _UP))
     if east is not None and north is not None:
         magnetic = [
             name for name in (east, north) if attributes.is_magnetic(dataset[name], dataset.attrs)
@@ -134,7 +132,7 @@ def find_velocity(dataset: xr.Dataset, *, regular: bool) -> Velocity:
             notes.append(f"the velocity components have different units, {units_text}")
         true = attributes.is_true(dataset[east], dataset.attrs)
         return Velocity((east, north), up, None, bool(magnetic), true, tuple(notes))
-    speed = _find(dataset, _SPEED, regular, notes)
+    speed = _find_variable(dataset, _SPEED, regular, notes)
     direction, sense = _direction(dataset, regular, notes)
     if speed is None or direction is None:
         raise UnreadableError(
@@ -158,7 +156,7 @@ def _direction(
 ) -> tuple[str | None, str | None]:
     """Find the direction variable and its sense: "to", "from", or None if unstated."""
     for sought, sense in ((_TOWARD, "to"), (_FROM, "from")):
-        name = _find(dataset, sought, regular, notes)
+        name = _find_variable(dataset, sought, regular, notes)
         if name is not None:
             return name, sense
     unclear = next((name for name in _AMBIGUOUS if name in dataset.data_vars), None)
@@ -167,8 +165,9 @@ def _direction(
     return _checked(dataset, unclear), attributes.sense_of_direction(dataset[unclear])
 
 
-def _find(dataset: xr.Dataset, sought: _Sought, regular: bool, notes: list[str]) -> str | None:
-    """Find a variable by its standard names, else by its usual names, preferring true north."""
+def _find_variable(
+    dataset: xr.Dataset, sought: _Sought, regular: bool, notes: list[str]
+) -> str | None:
     for standard_name in sought.standard:
         found = [str(name) for name in dataset.cf.standard_names.get(standard_name, [])]
         found = [one for one in found if not any(one.startswith(f"{two}_") for two in found)]
@@ -194,21 +193,19 @@ def _find(dataset: xr.Dataset, sought: _Sought, regular: bool, notes: list[str])
             f"`{name}`, with the standard name {own}, is used as {sense}ward, because the grid "
             "runs along latitudes"
         )
-    elif own and own not in sought.standard and not _only_marked(own, sought):
+    elif own and own not in sought.standard and not _is_magnetic_variant(own, sought):
         raise UnreadableError(
             f"`{name}` has the standard name {own} instead of {sought.standard[0]}"
         )
     return _checked(dataset, name)
 
 
-def _only_marked(own: str, sought: _Sought) -> bool:
-    """Return whether a standard name without ``magnetic`` is one of the wanted names."""
+def _is_magnetic_variant(own: str, sought: _Sought) -> bool:
     plain = re.sub(r"_?magnetic_?(north)?", "", own)
     return plain != own and plain in sought.standard
 
 
 def _checked(dataset: xr.Dataset, name: str) -> str:
-    """Return the name of a variable; raise UnreadableError if its attributes rule it out."""
     layers = layers_of(dataset)
     variable = dataset[name]
     reason = attributes.not_a_value(variable, layers) or attributes.other_frame(variable.attrs)
@@ -339,17 +336,17 @@ def marked_bad(variable: xr.DataArray) -> NDArray[np.bool_]:
         return bits_bad
     if meanings and len(meanings) == len(values):
         pairs = zip(values, meanings, strict=True)
-        bad = [_flag(value) for value, meaning in pairs if _BAD.search(meaning)]
+        bad = [_flag_text(value) for value, meaning in pairs if _BAD.search(meaning)]
     flags = np.asarray(variable.values)
     kinds, which = np.unique(flags.astype(object).astype(str), return_inverse=True)
-    marks: NDArray[np.bool_] = np.array([_flag(kind) in bad for kind in kinds])
+    marks: NDArray[np.bool_] = np.array([_flag_text(kind) in bad for kind in kinds])
     return marks[which].reshape(flags.shape)
 
 
-def _flag(value: Any) -> str:
-    """Convert a numeric or text flag to a common notation."""
+def _flag_text(value: Any) -> str:
     text = value.decode() if isinstance(value, bytes) else str(value)
     text = text.removeprefix("b'").removesuffix("'").removesuffix(".0")
+    # some files store the character codes of 0 to 9, A, B and Q
     return chr(int(text)) if re.fullmatch(r"4[89]|5[0-7]|6[56]|81", text) else text
 
 

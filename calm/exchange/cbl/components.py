@@ -28,8 +28,8 @@ _SLIGHT = 1e-9
 class ComponentMaker:
     """Converter of the buoys, anchors, connectors and materials of a problem file to components.
 
-    Drag and weight refer to the water in the problem file. Keys that CALM does not support are
-    added to `dropped`.
+    `density` [kg/m³] and `gravity` [m/s²] are the values in the problem file. Keys that CALM does
+    not support are added to `dropped`.
     """
 
     density: float
@@ -105,7 +105,7 @@ class ComponentMaker:
     def connector(self, definition: CableDefinition) -> ImportedComponent:
         """Convert a connector to a sphere with the same drag and length.
 
-        A connector of unknown size becomes a body.
+        A connector without a diameter becomes a body.
         """
         values, name = definition.values, definition.name
         wet, mass = self._at_reference(values.number("wet"), values.number("m", "mass"))
@@ -123,7 +123,7 @@ class ComponentMaker:
     def anchor(
         self, definition: CableDefinition | None, name: str, friction: float
     ) -> ImportedComponent:
-        """Convert an anchor; its weight is missing if the file gives none.
+        """Convert an anchor; the component has no weight if the file gives none.
 
         Parameters
         ----------
@@ -160,7 +160,7 @@ class ComponentMaker:
             raise definition.token.refuse(
                 f"`{name}` is a {shape}; in CALM a line ends at a float or at a towing ship"
             )
-        hull = _displacement(definition, shape)
+        hull = _displacement_table(definition, shape)
         height, volume, area = hull[-1]
         mass = values.number("m", "mass") or values.number("w") / self.gravity
         lift = values.number("buoyancy")
@@ -195,11 +195,10 @@ class ComponentMaker:
         return component
 
     def _at_reference(self, wet: float, mass: float) -> tuple[float, float]:
-        """Convert a weight in the file's water to reference water.
+        """Convert a weight in the file's water to reference water; return the weight and the mass.
 
-        Return it with the mass. The displaced volume follows from weight and mass, so that the
-        weight in the file's own water is unchanged. If the mass is impossible, the mass is 0 and
-        the weight is unchanged.
+        The displaced volume follows from weight and mass, so that the weight in the file's water is
+        unchanged. If the mass is impossible, the mass is 0 and the weight is not converted.
         """
         if mass * KILOGRAM_FORCE < wet or mass <= 0.0:
             return wet, 0.0
@@ -217,7 +216,7 @@ class ComponentMaker:
 def counts_on_depth(value: KeyValue) -> bool:
     """True if a drag coefficient depends on depth rather than on speed.
 
-    The arguments of a table are taken to be speeds if the last argument is a realistic speed.
+    The first column of a table is read as speeds if its last value is a realistic speed.
     """
     return not value.rows or value.rows[-1][0].at() > _FASTEST
 
@@ -233,18 +232,15 @@ def varies(definition: CableDefinition) -> bool:
     return any(value.rows or (value.formula and value.formula.names) for value in deep)
 
 
-def _displacement(
+def _displacement_table(
     definition: CableDefinition, shape: str
 ) -> tuple[tuple[float, float, float], ...]:
-    """Return the displacement table of a buoy.
-
-    Its columns are draft [m], displaced volume [m³] and immersed area [m²].
-    """
+    """Return rows of draft [m], displaced volume [m³] and immersed area [m²]."""
     values = definition.values
     across = values.number("d", "diam")
     height = values.number("h", "height")
     if shape == "axisymmetric":
-        return _turned(definition)
+        return _axisymmetric_table(definition)
     if across <= 0.0:
         raise definition.token.refuse(f"buoy `{definition.name}` has no diameter")
     if shape == "cylinder" and height <= 0.0:
@@ -265,8 +261,7 @@ def _displacement(
     return tuple(rows)
 
 
-def _turned(definition: CableDefinition) -> tuple[tuple[float, float, float], ...]:
-    """Return the displacement table of a hull from its diameters at heights above the keel."""
+def _axisymmetric_table(definition: CableDefinition) -> tuple[tuple[float, float, float], ...]:
     value = definition.values.get("diameters")
     if value is None or len(value.rows) < 2 or any(len(row) != 2 for row in value.rows):
         raise definition.token.refuse(

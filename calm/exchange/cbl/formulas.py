@@ -1,4 +1,4 @@
-"""Parse formulas of problem files to functions, which may depend on the depth `H`."""
+"""Parse the formulas of problem files into functions, which may depend on the depth `H`."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -136,19 +136,16 @@ def constant(text: str) -> float:
 def read_expression(words: TokenStream) -> Expression:
     """Parse the formula at the start of the tokens; raise InputError if the formula is invalid."""
     token, names = words.next, set[str]()
-    formula = _Reader(words, names).choice(0)
+    formula = _FormulaParser(words, names).choice(0)
     return Expression(formula, frozenset(names), token)
 
 
-class _Reader:
-    """Recursive-descent parser, from the lowest precedence to the highest."""
-
+class _FormulaParser:
     def __init__(self, words: TokenStream, names: set[str]) -> None:
         self._words = words
         self._names = names
 
     def choice(self, depth: int) -> Formula:
-        """Parse ``a ? b : c``."""
         if depth > _DEEPEST:
             raise self._words.next.refuse("parentheses are nested too deeply")
         condition = self._binary(0, depth)

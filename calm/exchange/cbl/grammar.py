@@ -164,7 +164,7 @@ class CableProblem:
 
     @property
     def kind(self) -> str:
-        """Type of the problem."""
+        """Type of the problem in lower case, such as ``towing``; ``general`` by default."""
         given = self.description.get("type")
         return given.text.lower() if given else "general"
 
@@ -215,7 +215,6 @@ def _section(words: TokenStream, problem: CableProblem) -> None:
 
 
 def _section_name(words: TokenStream) -> str | None:
-    """Return the name of a section that begins here; None if none begins here."""
     word, behind = words.next.text.lower(), words.ahead(1)
     if words.next.kind != "name" or word not in _SECTIONS:
         return None
@@ -225,7 +224,6 @@ def _section_name(words: TokenStream) -> str | None:
 
 
 def _values(words: TokenStream) -> KeyValues:
-    """Parse successive keys and values; the last value of a repeated key is used."""
     values = KeyValues()
     while words.next.kind == "key" and words.next.text not in _LAYOUT:
         key = words.take()
@@ -279,7 +277,6 @@ def _rows(words: TokenStream) -> list[tuple[Expression, ...]]:
 
 
 def _layout(words: TokenStream) -> CableItems:
-    """Parse terminals, segments and connectors, from the anchor up."""
     layout: CableItems = []
     while words.next.kind == "key":
         key = words.take()

@@ -104,10 +104,9 @@ class CableLayout:
         """
         first, *others = self.problem.layout
         assert isinstance(first, grammar.CableTerminal)
-        self._lay(others, first)
+        self._lay_legs(others, first)
 
     def _anchor(self, end: grammar.CableTerminal) -> model.ImportedComponent:
-        """Return the anchor at an end of the line; its length is the height of this end."""
         name = end.values["anchor"].text
         known, height = self.problem.anchors.get(name), end.values.number("z")
         anchor = self.makers.anchor(known, name, end.values.number("mu"))
@@ -116,11 +115,11 @@ class CableLayout:
         return anchor
 
     def _buoy(self, end: grammar.CableTerminal, *, afloat: bool) -> model.ImportedPiece:
-        found = _defined(self.problem.buoys, end.buoy, end.token)
+        found = _definition_of(self.problem.buoys, end.buoy, end.token)
         return model.ImportedPiece(self.makers.buoy(found, afloat=afloat))
 
     def _pieces_of(self, segments: list[grammar.CableSegment]) -> list[model.ImportedPiece]:
-        """Return the pieces of segments and their connectors, from the lowest up."""
+        """Convert segments and their connectors to pieces, from the lowest up."""
         items: list[model.ImportedPiece] = []
         below, seabed = 0.0, self.water.depth or self.problem.length
         for segment in segments:
@@ -128,7 +127,7 @@ class CableLayout:
             if length <= 0.0:
                 raise segment.token.refuse("a segment has no length")
             named = segment.values.get("material")
-            material = _defined(self.problem.materials, named, segment.token)
+            material = _definition_of(self.problem.materials, named, segment.token)
             items += self._pieces(segment, material, length, seabed - below)
             below += length
             for key in ("top-spool-length", "bottom-spool-length"):
@@ -147,17 +146,16 @@ class CableLayout:
         length: float,
         lower: float,
     ) -> list[model.ImportedPiece]:
-        """Convert a segment to pieces, from the lowest up.
+        """Convert a segment to pieces, from the lowest up; several if the drag varies with depth.
 
-        There are several pieces if the drag varies with depth. Depths are those in the upright
-        line; `lower` is the depth of the lower end of the segment [m].
+        `lower` is the depth of the lower end of the segment in the upright line [m].
         """
         clamps = self._clamps(segment, length)
         count = _PARTS if varies(material) else 1
         made: list[model.ImportedPiece] = []
         for part in range(count):
             depth = max(lower - length * (part + 0.5) / count, 0.0)
-            component = self.makers.material(material, length, depth, self._speed(depth))
+            component = self.makers.material(material, length, depth, self._current_speed(depth))
             if made and _similar_drag(made[-1].component, component):
                 made[-1].length = made[-1].extent + length / count
             else:
@@ -177,7 +175,7 @@ class CableLayout:
         for key in ("cdn", "cdt"):
             value = material.values.get(key)
             if value is not None and value.rows and not counts_on_depth(value):
-                speed = f"{self._speed(lower - length / 2.0):.3g} m/s"
+                speed = f"{self._current_speed(lower - length / 2.0):.3g} m/s"
                 for item in made:
                     item.guess = (
                         item.guess
@@ -186,8 +184,7 @@ class CableLayout:
                     )
         return made
 
-    def _speed(self, depth: float) -> float:
-        """Return the current speed at the level that is closest to a depth [m/s]."""
+    def _current_speed(self, depth: float) -> float:
         levels = self.water.current or ((0.0, 0.0, 0.0, 0.0),)
         row = min(levels, key=lambda each: abs(each[0] - depth))
         return math.hypot(row[1], row[2])
@@ -195,8 +192,8 @@ class CableLayout:
     def _clamps(
         self, segment: grammar.CableSegment, length: float
     ) -> list[tuple[float, model.ImportedComponent]]:
-        """Return the items at the nodes of a segment, with heights above its lower end [m]."""
-        heights = _heights(segment, length) if segment.attachments else []
+        """Return attached items, each with its height above the lower end of the segment [m]."""
+        heights = _node_heights(segment, length) if segment.attachments else []
         found = []
         for token, nodes in segment.attachments:
             component = self._connector(token)
@@ -214,8 +211,7 @@ class CableLayout:
             raise token.refuse(f"the connector `{token.text}` is not defined")
         return self.makers.connector(found)
 
-    def _lay(self, layout: grammar.CableItems, start: _End) -> None:
-        """Convert the part of a layout after a terminal or a node, including its branches."""
+    def _lay_legs(self, layout: grammar.CableItems, start: _End) -> None:
         segments: list[grammar.CableSegment] = []
         branched = any(isinstance(each, grammar.CableBranch) for each in layout)
         last = layout[-1] if layout else None
@@ -227,24 +223,23 @@ class CableLayout:
         whole = not branched and all(anchored)
         for each, following in zip_longest(layout, layout[1:]):
             if isinstance(each, grammar.CableTerminal):
-                self._leg(start, segments, each)
+                self._add_leg(start, segments, each)
                 segments = []
             elif isinstance(each, grammar.CableBranch):
-                self._lay(each.layout, start)
+                self._lay_legs(each.layout, start)
             else:
                 segments.append(each)
                 cut = whole and not isinstance(start, str) and each.connector is not None
                 if isinstance(following, grammar.CableBranch) or cut:
                     self.nodes += 1
                     node = f"node-{self.nodes}"
-                    self._leg(start, segments, node)
+                    self._add_leg(start, segments, node)
                     start, segments = node, []
         if segments or not isinstance(last, grammar.CableTerminal):
             message = "the layout has no `terminal` at the end of a line"
             raise last.token.refuse(message) if last else refused(self.problem.path, message)
 
-    def _leg(self, start: _End, segments: list[grammar.CableSegment], end: _End) -> None:
-        """Add a leg to the net; a leg that the layout lists downwards is reversed."""
+    def _add_leg(self, start: _End, segments: list[grammar.CableSegment], end: _End) -> None:
         items = self._pieces_of(segments)[::-1]
         first, lower, low = self._end(start)
         last, upper, high = self._end(end)
@@ -252,16 +247,13 @@ class CableLayout:
             where = start if isinstance(end, str) else end
             assert not isinstance(where, str)
             raise where.token.refuse("this line has no segment, or both of its ends are lower ends")
-        if high:
-            items = [_turned(each) for each in items[::-1]]
+        if high:  # the layout lists this leg downwards
+            items = [_reversed_piece(each) for each in items[::-1]]
             first, lower, last, upper = last, upper, first, lower
         self.design.lay([*last, *items, *first], upper, lower)
 
     def _end(self, at: _End) -> tuple[list[model.ImportedPiece], str, bool]:
-        """Return the pieces at an end of a leg.
-
-        Return also the key of its connection, and whether the leg leads down.
-        """
+        """Return the pieces and the connection at an end of a leg; the flag marks a lower end."""
         if isinstance(at, str):
             return [], model.joined_at(at), False
         values, token = at.values, at.token
@@ -276,8 +268,7 @@ class CableLayout:
         return [model.ImportedPiece(self._anchor(at))], model.anchored_at(x, y), True
 
 
-def _turned(item: model.ImportedPiece) -> model.ImportedPiece:
-    """Reverse a piece: its clamps are then measured from its other end."""
+def _reversed_piece(item: model.ImportedPiece) -> model.ImportedPiece:
     clamps = [replace(each, at=item.extent - each.at) for each in item.clamps[::-1]]
     return replace(item, clamps=clamps)
 
@@ -287,7 +278,7 @@ def _similar_drag(one: model.ImportedComponent, other: model.ImportedComponent) 
     return all(abs(a - b) <= _CHANGE * max(abs(a), abs(b)) for a, b in pairs)
 
 
-def _heights(segment: grammar.CableSegment, length: float) -> list[float]:
+def _node_heights(segment: grammar.CableSegment, length: float) -> list[float]:
     """Return the heights of the nodes above the lower end of a segment [m]."""
     nodes = segment.values.get("nodes")
     if nodes is None or not nodes.rows or any(len(row) != 2 for row in nodes.rows):
@@ -305,12 +296,11 @@ def _heights(segment: grammar.CableSegment, length: float) -> list[float]:
     return heights
 
 
-def _defined(
+def _definition_of(
     definitions: dict[str, grammar.CableDefinition],
     value: grammar.KeyValue | None,
     token: Token,
 ) -> grammar.CableDefinition:
-    """Return the definition with the name in `value`; errors refer to the value, or to `token`."""
     if value is None or not value.text:
         raise token.refuse("the name of a material or a buoy is missing")
     found = definitions.get(value.text)

@@ -1,6 +1,6 @@
 """Resolve comments, macros, conditions and included files of a problem file.
 
-Existing libraries for C preprocessing are not used: they do not limit the expansion of macros
+Existing libraries for C preprocessing are not used. They do not limit the expansion of macros
 within their arguments, they split numbers such as `6e3` if `e3` is a macro, and they accept a
 comment without an end.
 """
@@ -35,7 +35,7 @@ class _Macro:
 
 @dataclass
 class Preprocessor:
-    """Processor of comments, macros, conditions and includes that works like the C preprocessor."""
+    """Preprocessor for problem files, which works like the C preprocessor."""
 
     options: ImportOptions
     _macros: dict[str, _Macro] = field(default_factory=dict)
@@ -167,7 +167,7 @@ class Preprocessor:
         self._lines.append(SourceLine(expanded, path, number))
 
     def _expanded(self, text: str, hidden: frozenset[str] = frozenset()) -> str:
-        """Expand the macros in a text, except inside quotation marks and macros in `hidden`."""
+        """Expand the macros in a text, except texts in quotation marks and macros in `hidden`."""
         pieces: list[str] = []
         size, at = 0, 0
         while found := _PIECE.match(text, at):
@@ -223,7 +223,7 @@ def _arguments(text: str, at: int) -> tuple[list[str], int]:
 def _without_comments(text: str, path: str) -> list[str]:
     """Remove comments, keeping the number of lines.
 
-    Lines joined by a backslash are moved to the first of them.
+    Lines that end in a backslash are joined with the next line, and followed by empty lines.
     """
     pieces: list[str] = []
     at = 0

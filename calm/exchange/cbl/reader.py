@@ -102,7 +102,7 @@ def read_cbl(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
 
 def _read(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
     problem = read_problem(path, options)
-    _refuse_other_shapes(problem)
+    _refuse_unsupported_problems(problem)
     title, environment = problem.description.get("title"), problem.environment
     design = model.ImportedDesign(
         "WHOI Cable", title.text if title and title.text else path.stem, [], None
@@ -136,14 +136,12 @@ def _read(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
 
 
 def _is_net(problem: CableProblem) -> bool:
-    """True if the line has branches, or an anchor at each end."""
     anchored = all("anchor" in end.values for end in problem.terminals)
     branched = any(isinstance(each, CableBranch) for each in problem.layout)
     return problem.kind != "towing" and (branched or anchored)
 
 
-def _refuse_other_shapes(problem: CableProblem) -> None:
-    """Raise InputError for anything except moorings, nets of legs, and tows of a body by a ship."""
+def _refuse_unsupported_problems(problem: CableProblem) -> None:
     kind, layout, ends = problem.kind, problem.layout, problem.terminals
     if kind in _REFUSED and not (kind in _MOORED and _is_net(problem)):
         raise problem.description["type"].token.refuse(
@@ -175,10 +173,6 @@ def _refuse_other_shapes(problem: CableProblem) -> None:
 
 
 def _water_of(problem: CableProblem, dropped: list[model.Remark]) -> model.ImportedWater:
-    """Read depth, density, gravity, current and wind; unsupported keys are added to `dropped`.
-
-    For a tow without depth, the length of the line is used.
-    """
     environment = problem.environment
     depth = environment.number("depth")
     water = model.ImportedWater(depth if depth > 0.0 else None)
@@ -194,6 +188,7 @@ def _water_of(problem: CableProblem, dropped: list[model.Remark]) -> model.Impor
             water.guesses["current"] = what
     axes = [_profile(environment, axis, grid) for axis in "xyz"]
     angle = 0.0 if grid else environment.number("current-rotation")
+    # a tow may have no depth
     water.current = _current(axes, angle, depth if depth > 0.0 else problem.length)
     east, north = (environment.number(f"{axis}-wind") for axis in "xy")
     if east or north:
@@ -208,10 +203,7 @@ def _water_of(problem: CableProblem, dropped: list[model.Remark]) -> model.Impor
 def _current(
     axes: list[_Profile | None], angle: float, deepest: float
 ) -> tuple[tuple[float, float, float, float], ...]:
-    """Return rows of depth [m] and current to the east (x), to the north (y) and up (z) [m/s].
-
-    The current is that at time 0.
-    """
+    """Return rows of depth [m] and velocity in x (east), y (north) and z (up) [m/s] at time 0."""
 
     def at(depth: float) -> tuple[float, float, float]:
         x, y, z = (0.0 if axis is None else axis[0](depth) for axis in axes)
@@ -222,7 +214,7 @@ def _current(
     inside = {knot for _, knots in given for knot in knots if 0.0 < knot < deepest}
     levels = sorted({0.0, deepest, *inside})
     if not all(knots for _, knots in given):
-        levels = _refined(at, levels)
+        levels = _refine_levels(at, levels)
     rows = []
     for depth in levels:
         x, y, z = (round(speed, _DIGITS) + 0.0 for speed in at(depth))
@@ -250,8 +242,10 @@ def _profile(environment: KeyValues, axis: str, grid: _Grid | None) -> _Profile 
     return (lambda depth: scale * value.at(depth)), knots
 
 
-def _refined(at: Callable[[float], tuple[float, float, float]], levels: list[float]) -> list[float]:
-    """Insert levels until the current is linear between levels, within a tolerance."""
+def _refine_levels(
+    at: Callable[[float], tuple[float, float, float]], levels: list[float]
+) -> list[float]:
+    """Halve intervals until the current is linear between levels, within `_FINEST`."""
     fastest = max(max(map(abs, at(depth))) for depth in levels)
     for _ in range(_HALVINGS):
         finer = [levels[0]]
@@ -272,11 +266,11 @@ def _refined(at: Callable[[float], tuple[float, float, float]], levels: list[flo
 def _gridded_current(
     value: KeyValue, problem: CableProblem, dropped: list[model.Remark]
 ) -> _Grid | None:
-    """Read the currents of a current file; return None if the file does not exist.
+    """Read a current file; return None if the file does not exist.
 
     The file begins with the step, start and count for each of time, depth, x and y. The speeds in
-    x, y and z follow, with depth varying fastest, then x, then y, then time. Parts that are not
-    used are added to `dropped`.
+    x, y and z follow, with depth varying fastest, then x, then y, then time. Remarks about unused
+    currents are added to `dropped`.
     """
     folder = problem.path.parent
     path, outside = folder / value.text, problem.options.allow_include
@@ -325,7 +319,7 @@ def _numbers(path: Path) -> NDArray[np.float64]:
 
 
 def _at_zero(grid: NDArray[np.float64], axis: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Interpolate a grid to 0 along its first axis; beyond its ends the closest value is used."""
+    """Interpolate a grid to 0 along its first axis; if 0 is out of range, use the closest end."""
     order = np.argsort(axis)
     axis, grid = axis[order], grid[order]
     place = min(max(0.0, axis[0]), axis[-1])

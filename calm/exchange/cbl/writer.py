@@ -31,7 +31,7 @@ _LEAST = 1e-3  # smallest diameter in m and mass in kg
 class _Problem:
     """Sections of a problem file, collected from the lower end of the line up.
 
-    The water has a uniform density [kg/m³].
+    `density` is the uniform density of the water [kg/m³].
     """
 
     density: float
@@ -42,27 +42,24 @@ class _Problem:
     last: tuple[str, float] = ("", 0.0)
 
     def segment(self, name: str, length: float) -> None:
-        """Add a segment on top of the line, after the connector for the load there."""
         if length <= 0.0:
             return
         if self.load is None and self.last[0] == name:
             length += self.last[1]
             self.layout.pop()
-        self._join()
+        self._add_connector()
         self.last = name, length
         count = min(max(round(length / _APART) + 1, _FINEST), _COARSEST)
         self.layout.append(
             f"    segment = {{ length = {length:.10g}  material = {name}  nodes = ({count}, 1.0) }}"
         )
 
-    def at_a_point(self, part: ExportedPart) -> None:
-        """Add a load at the upper end of the line so far."""
+    def add_point_load(self, part: ExportedPart) -> None:
         if self.load is None:
             self.load = PartLoad(self.density)
         self.load.add(part)
 
-    def _join(self) -> None:
-        """Add the connector for the load at the upper end of the line so far, if there is one."""
+    def _add_connector(self) -> None:
         if self.load is None:
             return
         load, self.load = self.load, None
@@ -72,7 +69,7 @@ class _Problem:
             f"d = {max(across, 1e-6):.9g}  wet = {-load.net:.9g}  m = {load.mass:.9g}"
             f"  Cdn = {1.0 if across else 0.0:g}"
         )
-        name = unique_name(self.connectors, f"p_{_word(base)}", figures)
+        name = unique_name(self.connectors, f"p_{_name_of(base)}", figures)
         self.layout.append(f"    connector = {name}")
 
 
@@ -95,11 +92,11 @@ def write_cbl(exported: ExportedDesign) -> Exported:
     else:
         buoy, parts = parts[-1], parts[:-1]
     for part in reversed(parts):
-        _lay(problem, part, lost)
+        _add_part(problem, part, lost)
     if buoy.clamps:
         lost.append("clamps on the float: their loads act at the end of the line")
         for clamp, _ in buoy.clamps:
-            problem.at_a_point(clamp)
+            problem.add_point_load(clamp)
     floating = design.afloat
     if floating and not design.has_draft:
         lost.append(
@@ -117,10 +114,10 @@ def write_cbl(exported: ExportedDesign) -> Exported:
     if buoy.flexible:
         lost.append("the free end of the line, which is replaced by a small weightless sphere")
     elif not floating and design.tow is None and buoy.length > 0.0:
-        problem.segment(_link(problem), buoy.length)
+        problem.segment(_rigid_link(problem), buoy.length)
     if problem.load is not None:
-        problem.segment(_link(problem), 0.001)
-    text = _text(design, problem, _buoy_figures(buoy, design, density, lost), density)
+        problem.segment(_rigid_link(problem), 0.001)
+    text = _text(design, problem, _buoy_keys(buoy, design, density, lost), density)
     losses = design.losses(lost)
     head = [f"{design.name}, exported by CALM without:", *(f"- {each}" for each in losses)]
     comment = "\n   ".join(line.replace("*/", "* /") for line in head)
@@ -151,23 +148,22 @@ def _along_the_heading(design: ExportedLine, lost: list[str]) -> ExportedLine:
     return replace(design, tow=tow, levels=tuple(levels))
 
 
-def _lay(problem: _Problem, part: ExportedPart, lost: list[str]) -> None:
-    """Add a part to the problem, from its lower end up."""
+def _add_part(problem: _Problem, part: ExportedPart, lost: list[str]) -> None:
     if part.flexible or (part.directional and part.length > 0.0):
         name = _material(problem, part)
         below = part.length
         for clamp, at in sorted(part.clamps, key=lambda pair: -pair[1]):
             problem.segment(name, below - at)
-            problem.at_a_point(clamp)
+            problem.add_point_load(clamp)
             below = min(at, below)
         problem.segment(name, below)
         return
-    link = _link(problem) if part.length > 0.0 else ""
+    link = _rigid_link(problem) if part.length > 0.0 else ""
     if link:
         problem.segment(link, part.length / 2.0)
-    problem.at_a_point(part)
+    problem.add_point_load(part)
     for clamp, at in part.clamps:
-        problem.at_a_point(clamp)
+        problem.add_point_load(clamp)
         if abs(at - part.length / 2.0) > 0.05:
             lost.append(
                 "the positions of clamps on rigid pieces: their loads act at the middle of the "
@@ -177,8 +173,7 @@ def _lay(problem: _Problem, part: ExportedPart, lost: list[str]) -> None:
         problem.segment(link, part.length / 2.0)
 
 
-def _link(problem: _Problem) -> str:
-    """Return the name of a stiff material without weight and drag, for rigid pieces."""
+def _rigid_link(problem: _Problem) -> str:
     figures = (
         f"d = 0.001  m = {_LEAST_MASS}  wet = {_LEAST_WEIGHT}  Cdn = 0  Cdt = 0"
         f"  EA = {_RIGID:g}  EI = 1e-4  GJ = 1e-4"
@@ -187,7 +182,6 @@ def _link(problem: _Problem) -> str:
 
 
 def _material(problem: _Problem, part: ExportedPart) -> str:
-    """Return the name of a material with the values per metre of a cable, a chain or a cylinder."""
     per = 1.0 if part.flexible else part.length
     wet, across = 0.0 - part.net / per, part.diameter or part.area() / per
     normal = part.area(problem.density) / per / across if across else 0.0
@@ -197,16 +191,15 @@ def _material(problem: _Problem, part: ExportedPart) -> str:
         f"{wet if abs(wet) > _LEAST_WEIGHT else _LEAST_WEIGHT:.9g}  Cdn = {normal:.9g}  Cdt = "
         f"{along:.9g}  EA = {part.stiffness or _RIGID:.9g}  EI = 1e-4  GJ = 1e-4"
     )
-    name = _word(part.use)
+    name = _name_of(part.use)
     if isinstance(part.component, Chain) and not is_called(name, "chain"):
         name = f"chain_{name}"
     return unique_name(problem.materials, name, figures)
 
 
-def _word(text: str) -> str:
-    """Convert a text to a word of WHOI Cable, which must begin with a letter."""
+def _name_of(text: str) -> str:
     word = "".join(sign if sign.isalnum() and sign.isascii() else "_" for sign in text)
-    return word if word[:1].isalpha() else f"n_{word}"
+    return word if word[:1].isalpha() else f"n_{word}"  # a name must begin with a letter
 
 
 def _text(design: ExportedLine, problem: _Problem, buoy: str, density: float) -> str:
@@ -257,11 +250,7 @@ def _text(design: ExportedLine, problem: _Problem, buoy: str, density: float) ->
     return "\n".join(lines)
 
 
-def _buoy_figures(part: ExportedPart, design: ExportedLine, density: float, lost: list[str]) -> str:
-    """Return size, mass, buoyancy and drag of a buoy by the keys of WHOI Cable.
-
-    Features that WHOI Cable cannot represent are added to `lost`.
-    """
+def _buoy_keys(part: ExportedPart, design: ExportedLine, density: float, lost: list[str]) -> str:
     if part.flexible:
         return "type = sphere  d = 0.001  m = 0.001  buoyancy = 0.01  Cdn = 0"
     floating, gravity = design.afloat, design.gravity
@@ -274,10 +263,10 @@ def _buoy_figures(part: ExportedPart, design: ExportedLine, density: float, lost
         mass, lift = -net / gravity * 1.2, 0.2 * -net
     form = getattr(part.component, "hull", None)
     form = form if isinstance(form, Displacement) else part.component
-    wind = _windage(part, design)
+    wind = _windage_keys(part, design)
     if floating and isinstance(form, Displacement | Cylinder):
         if isinstance(form, Displacement):
-            diameters, rows = _turned(form)
+            diameters, rows = _hull_of_revolution(form)
             hull, volume = tabulated_hull(rows), rows[-1][1]
             size = f"type = axisymmetric  m = {mass:.9g}  diameters = {diameters}"
         else:
@@ -300,8 +289,7 @@ def _buoy_figures(part: ExportedPart, design: ExportedLine, density: float, lost
     return f"{size}  m = {mass:.9g}  buoyancy = {lift:.9g}  Cdn = {drag:.9g}{wind}"
 
 
-def _windage(part: ExportedPart, design: ExportedLine) -> str:
-    """Return the wind area of a float, if there is wind or if the file specifies the area."""
+def _windage_keys(part: ExportedPart, design: ExportedLine) -> str:
     component = part.component
     if not isinstance(component, Rigid):
         return ""
@@ -313,7 +301,7 @@ def _windage(part: ExportedPart, design: ExportedLine) -> str:
 
 
 def _drag_share(design: ExportedLine, hull: Hull, mass: float, net: float, most: float) -> float:
-    """Return the factor on a hull's drag coefficient that gives CALM's drag at its draft.
+    """Return the factor on a hull's drag coefficient that gives the drag computed by CALM.
 
     `net` is the net buoyancy in use, and `most` the buoyancy of the whole hull [N].
     """
@@ -323,10 +311,10 @@ def _drag_share(design: ExportedLine, hull: Hull, mass: float, net: float, most:
     return seen / shown if shown > 0.0 else 1.0
 
 
-def _turned(form: Displacement) -> tuple[str, list[tuple[float, float, float]]]:
+def _hull_of_revolution(form: Displacement) -> tuple[str, list[tuple[float, float, float]]]:
     """Convert a displacement table to levels and diameters of a hull of revolution.
 
-    Also return the rows of draft [m], displaced volume [m³] and area [m²] of this hull.
+    Also return rows of draft [m], displaced volume [m³] and area [m²] of this hull.
     """
     table = form.displacement
     if table[0][0] > 0.0:

@@ -40,8 +40,8 @@ def rigid(element: MddElement) -> model.ImportedComponent:
     """Convert a rigid or clamped element to a component.
 
     Mooring Design & Dynamics treats an element with a diameter as a sphere of that diameter,
-    whatever the length of the element. An element that has only a width is a cylinder. Its Cd
-    applies to flow normal to the axis, and its end faces have no drag.
+    whatever the length of the element. An element that has only a width is a cylinder. The Cd of a
+    cylinder applies to flow normal to the axis, and the end faces have no drag.
     """
     lift = element.lift * KILOGRAM_FORCE
     role = role_of(element.name, lift, fastener=element.is_fastener)
@@ -94,7 +94,6 @@ def rides_by_buoyancy(component: model.ImportedComponent) -> None:
 
 
 def _is_too_small(element: MddElement) -> bool:
-    """True if an element is too small to displace the water for its stated buoyancy."""
     if element.diameter > 0.0:
         volume = math.pi * element.diameter**2 * max(element.diameter / 6.0, element.length / 4.0)
     else:
@@ -103,7 +102,6 @@ def _is_too_small(element: MddElement) -> bool:
 
 
 def _flexible(element: MddElement) -> model.ImportedComponent:
-    """Convert a wire, rope or chain to a component, whose Cd refers to its width."""
     figures: dict[str, model.FigureOrWord] = {
         "diameter": element.across,
         "cn": element.cd,
@@ -179,8 +177,8 @@ class MddElement:
 def read_elements(variables: MatVariables, suffix: str) -> tuple[list[MddElement], list[str]]:
     """Read the elements of a line in file order; also return messages about mistakes.
 
-    `suffix` selects the matrices by the end of their names: ``t`` for the matrices of a tow, ``CO``
-    for those of clamped elements, and empty for those of a mooring.
+    `suffix` is the end of the names of the matrices: ``t`` for a tow, ``CO`` for clamped elements,
+    and empty for a mooring.
     """
     problems: list[str] = []
     size = _matrix(variables, f"H{suffix}", problems)
@@ -268,7 +266,6 @@ def _densities(variables: MatVariables, length: RealArray) -> RealArray:
 
 
 def _names(variables: MatVariables, name: str, count: int) -> list[str]:
-    """Return the names of the elements; an element without a name gets its number."""
     value = variables.get(name)
     found = names(value)
     if len(found) != count and isinstance(value, np.ndarray) and value.ndim == 2:
@@ -278,10 +275,7 @@ def _names(variables: MatVariables, name: str, count: int) -> list[str]:
 
 
 def _modulus(value: float) -> float | None:
-    """Return the elastic modulus [Pa].
-
-    A small whole number in the file is the number of a material.
-    """
     if not value > 0.0:
         return None
+    # a small whole number in the file is the number of a material
     return MODULI[int(value) - 1] if value in range(1, len(MODULI) + 1) else value

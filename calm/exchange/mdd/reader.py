@@ -77,7 +77,7 @@ def read_mdd(path: Path) -> model.ImportedDesign:
     else:
         _lay_mooring(design, elements, path)
     if clamped:
-        _clamp(design, clamped, variables, path)
+        _attach_clamps(design, clamped, variables, path)
     return design
 
 
@@ -99,7 +99,7 @@ def _lay_mooring(design: model.ImportedDesign, elements: list[MddElement], path:
 def _lay_tow(
     design: model.ImportedDesign, elements: list[MddElement], variables: MatVariables, path: Path
 ) -> None:
-    """Add the elements of a tow; the file lists them from the body up to a marker for the ship."""
+    # the file lists a tow from the body up; the last element may be a marker for the ship
     end = elements[-1]
     if not end.is_line and end.length <= 0.01 and abs(end.lift) <= 0.011 and len(elements) > 1:
         elements = elements[:-1]
@@ -118,10 +118,9 @@ def _lay_tow(
         design.dropped.append(model.Remark("afh", what))
 
 
-def _clamp(
+def _attach_clamps(
     design: model.ImportedDesign, clamped: list[MddElement], variables: MatVariables, path: Path
 ) -> None:
-    """Attach each clamped element to its piece, at a fraction of the length from its lower end."""
     host, share, height = (variables.row(name).tolist() for name in ("Jobj", "Pobj", "ZCO"))
     by_share = len(host) == len(share) == len(clamped)
     by_height = len(height) == len(clamped)
@@ -132,15 +131,15 @@ def _clamp(
         )
         raise refused(path, message)
     for i, element in enumerate(clamped):
-        above = _by_height(design.items, height[i]) if by_height else None
+        above = _position_by_height(design.items, height[i]) if by_height else None
         place, guess = above, "the position follows from the height `ZCO` alone"
         if by_share:
-            place, guess = _by_share(design, host[i], share[i]), ""
+            place, guess = _position_by_share(design, host[i], share[i]), ""
             if place is None:
                 raise refused(
                     path, f"{element.name} is clamped on element {host[i]:g}, which does not exist"
                 )
-            if above is not None and not _agree(place, above):
+            if above is not None and not _positions_agree(place, above):
                 guess = f"the position is from `Jobj` and `Pobj`; `ZCO` disagrees ({height[i]:g} m)"
         if place is None:
             raise refused(
@@ -151,10 +150,13 @@ def _clamp(
         design.items[place[0]].clamp(rigid(element), place[1], guess)
 
 
-def _by_share(design: model.ImportedDesign, host: float, share: float) -> tuple[int, float] | None:
-    """Return the piece of an element, and the distance of a clamp from its upper end [m].
+def _position_by_share(
+    design: model.ImportedDesign, host: float, share: float
+) -> tuple[int, float] | None:
+    """Return the index of a piece, and the distance of a clamp from its upper end [m].
 
-    `share` is the position of the clamp as a fraction of the length of the element.
+    `host` is the number of the element in the file. `share` is the position of the clamp as a
+    fraction of the length of the element, from its lower end.
     """
     count, number = len(design.items), round(host) - 1
     if design.tow is not None:
@@ -166,8 +168,13 @@ def _by_share(design: model.ImportedDesign, host: float, share: float) -> tuple[
     return number, min(max((1.0 - share) * length, 0.0), length)
 
 
-def _by_height(items: list[model.ImportedPiece], height: float) -> tuple[int, float] | None:
-    """Return the piece at a height above the seabed, or in a tow above the towed body."""
+def _position_by_height(
+    items: list[model.ImportedPiece], height: float
+) -> tuple[int, float] | None:
+    """Return the index of the piece at a height, and the distance from its upper end [m].
+
+    The height is above the seabed, or in a tow above the towed body.
+    """
     below = 0.0
     for number in range(len(items) - 1, -1, -1):
         length = items[number].extent
@@ -177,5 +184,5 @@ def _by_height(items: list[model.ImportedPiece], height: float) -> tuple[int, fl
     return None
 
 
-def _agree(one: tuple[int, float], other: tuple[int, float]) -> bool:
+def _positions_agree(one: tuple[int, float], other: tuple[int, float]) -> bool:
     return one[0] == other[0] and abs(one[1] - other[1]) <= _APART + _APART * abs(one[1])

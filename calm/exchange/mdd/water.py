@@ -68,7 +68,7 @@ def read_water(
 
 
 def _profiles(variables: MatVariables, name: str, levels: int) -> RealArray | None:
-    """Read a current component as (levels, times); in the file either dimension may come first."""
+    """Read profiles as (levels, times); in the file, either dimension may come first."""
     values = variables.reals(name)
     if values.size == 0:
         return None
@@ -96,7 +96,7 @@ def _filled(values: RealArray | None, name: str, levels: int, times: int) -> Rea
 
 
 def _days(time: RealArray, times: int, guessed: list[model.Remark]) -> tuple[RealArray, str]:
-    """Return the times as days, and the date from which they are counted."""
+    """Return the times in days, and the date of day 0."""
     if time.size != times:
         guessed.append(
             model.Remark(

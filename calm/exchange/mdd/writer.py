@@ -51,7 +51,7 @@ def write_mdd(exported: ExportedDesign) -> Exported:
         f"B{suffix}": figures[4:5],
         f"Cd{suffix}": figures[5:6],
         f"ME{suffix}": figures[6:7],
-        f"moorele{suffix}": _texts(names),
+        f"moorele{suffix}": _character_matrix(names),
         "time": np.zeros((0, 0)),
     }
     if not suffix:
@@ -70,17 +70,14 @@ def write_mdd(exported: ExportedDesign) -> Exported:
             "current"
         )
     losses = design.losses(lost)
-    variables["lost"] = _texts([f"{design.name}, exported by CALM without:", *losses])
+    variables["lost"] = _character_matrix([f"{design.name}, exported by CALM without:", *losses])
     content = io.BytesIO()
     savemat(content, variables, format="5", oned_as="row")
     return Exported(content.getvalue(), losses)
 
 
 def _column(part: ExportedPart, lost: list[str]) -> tuple[float, ...]:
-    """Return the values of a part in the matrices.
-
-    These are length, width, diameter, flag, buoyancy [kg], Cd, modulus and mass.
-    """
+    """Return length, width, diameter, flag, buoyancy [kg], Cd, modulus [Pa] and mass of a part."""
     lift = part.net / KILOGRAM_FORCE
     if part.flexible:
         if part.kt > 0.0:
@@ -122,8 +119,8 @@ def _size(part: ExportedPart, lost: list[str]) -> tuple[float, float, float]:
 def _clamped(design: ExportedLine, lost: list[str]) -> dict[str, object]:
     """Return the variables for clamped parts, from the top down.
 
-    The position of a clamp is the number of an element, and the fraction of its length from its
-    lower end.
+    `Jobj` has the number of the host element of each clamp, `Pobj` the fraction of the host's
+    length below the clamp, and `ZCO` the height of the clamp [m].
     """
     rows, names, places = [], [], []
     count = len(design.parts)
@@ -146,7 +143,7 @@ def _clamped(design: ExportedLine, lost: list[str]) -> dict[str, object]:
         "HCO": columns[:4],
         "BCO": columns[4:5],
         "CdCO": columns[5:6],
-        "mooreleCO": _texts(names),
+        "mooreleCO": _character_matrix(names),
         "Jobj": where[:1],
         "Pobj": where[1:2],
         "ZCO": where[2:],
@@ -155,16 +152,12 @@ def _clamped(design: ExportedLine, lost: list[str]) -> dict[str, object]:
 
 
 def _name(part: ExportedPart) -> str:
-    """Return the name of an element: the component id, preceded by "chain" for chains.
-
-    Mooring Design & Dynamics recognises chains by this word.
-    """
+    # Mooring Design & Dynamics recognises chains by this word
     bare = isinstance(part.component, Chain) and "chain" not in part.use
     return (f"chain {part.use}" if bare else part.use)[:_LONGEST]
 
 
-def _texts(texts: list[str]) -> np.ndarray[tuple[int, ...], np.dtype[np.str_]]:
-    """Convert texts to a character matrix."""
+def _character_matrix(texts: list[str]) -> np.ndarray[tuple[int, ...], np.dtype[np.str_]]:
     width = max(len(text) for text in texts)
     plain = [text.encode("ascii", "replace").decode() for text in texts]
     return np.array([text.ljust(width) for text in plain])

@@ -50,10 +50,9 @@ _COLUMNS = {
 
 @dataclass(frozen=True)
 class _File:
-    """Tables of a file: points and line types by name, and the lines.
+    """Points and line types by name, and lines; `at` has the lines that meet at each point.
 
-    `at` has the lines that meet at each point. `depth` [m] and `gravity` [m/s²] are those of the
-    water. Pieces are added to `design`.
+    `depth` [m] and `gravity` [m/s²] are values of the water. Pieces are added to `design`.
     """
 
     points: dict[str, _Row]
@@ -65,13 +64,6 @@ class _File:
     design: model.ImportedDesign
 
     def piece(self, line: _Row) -> model.ImportedPiece:
-        """Convert a line to a piece.
-
-        Raises
-        ------
-        InputError
-            The line has no type or no length.
-        """
         kind = self.types.get(line.words.get("type", ""))
         if kind is None:
             raise line.refuse(f"line type `{line.words.get('type')}` is not defined in the file")
@@ -108,7 +100,7 @@ class _File:
         items: list[model.ImportedPiece] = []
         for at, line in zip(names, [*lines, None], strict=True):
             if not _is_held(self.points[at]) and at not in placed:
-                there = _point_of(self.points[at])
+                there = _piece_at(self.points[at])
                 items += [] if there is None else [there]
             placed.add(at)
             items += [] if line is None else [self.piece(line)]
@@ -168,7 +160,7 @@ def read_moordyn(path: Path) -> model.ImportedDesign:
     names, down = single
     items = file.along(names, down, {names[0], names[-1]})
     anchor = model.ImportedPiece(_anchor_of(points[names[-1]], depth))
-    design.items = [_upper_end(points[names[0]]), *items, anchor]
+    design.items = [_upper_float(points[names[0]]), *items, anchor]
     return design
 
 
@@ -190,12 +182,12 @@ def _single_line(file: _File) -> tuple[list[str], list[_Row]] | None:
 
 
 def _lift(figures: dict[str, model.FigureOrWord]) -> float:
-    """Return the net buoyancy of a point in water, expressed as a mass [kg]."""
+    """Return the net buoyancy of a point in water as a mass [kg]."""
     return CATALOGUE_DENSITY * float(figures["volume"]) - float(figures["mass"])
 
 
 def _is_held(point: _Row) -> bool:
-    """True if a point is fixed or moves with a vessel."""
+    # other points are fixed, or move with a vessel
     return not point.words.get("attachment", "").lower().startswith(_FREE)
 
 
@@ -219,7 +211,6 @@ def _currents(path: Path) -> tuple[tuple[float, float, float, float], ...]:
 
 
 def _cable(kind: _Row, gravity: float) -> model.ImportedComponent:
-    """Convert a line type to a cable; its weight in water follows from mass and diameter."""
     across = kind.number("diameter")
     if across <= 0.0:
         raise kind.refuse("a line type has no diameter")
@@ -236,8 +227,7 @@ def _cable(kind: _Row, gravity: float) -> model.ImportedComponent:
     return component
 
 
-def _point_of(point: _Row) -> model.ImportedPiece | None:
-    """Convert a free point to a part; return None if it has neither mass, volume nor drag."""
+def _piece_at(point: _Row) -> model.ImportedPiece | None:
     figures = _figures(point)
     if not any(figures[key] for key in ("mass", "volume", "drag_area")):
         return None
@@ -257,11 +247,7 @@ def _figures(point: _Row) -> dict[str, model.FigureOrWord]:
     }  # fmt: skip
 
 
-def _upper_end(top: _Row) -> model.ImportedPiece:
-    """Convert the point at the upper end to a float.
-
-    The point must be free, or be held at the surface with enough volume to float.
-    """
+def _upper_float(top: _Row) -> model.ImportedPiece:
     figures = _figures(top)
     if _lift(figures) <= 0.0:
         raise top.refuse("the upper end is free but not buoyant")
@@ -274,32 +260,21 @@ def _upper_end(top: _Row) -> model.ImportedPiece:
 
 
 def _anchor_of(point: _Row, depth: float) -> model.ImportedComponent:
-    """Create an anchor whose height is the height of its point above the seabed."""
     height = depth + point.number("z")
     return model.ImportedComponent("anchor", "anchor", {"length": height} if height > 1e-6 else {})
 
 
 @dataclass(frozen=True)
 class _Row:
-    """A row of a table: its texts by heading, and its position in the file."""
-
     path: str
     line: int
-    words: dict[str, str]
+    words: dict[str, str]  # by heading; common headings are replaced by `_COLUMNS`
 
     @property
     def ends(self) -> tuple[str, str]:
-        """Names of the points at the ends of a line."""
         return self.words.get("a", ""), self.words.get("b", "")
 
     def number(self, key: str, default: float | None = None) -> float:
-        """Parse the text of a column as a number.
-
-        Raises
-        ------
-        InputError
-            The text is missing or is not a number.
-        """
         text = self.words.get(key)
         if text is None and default is not None:
             return default
@@ -312,19 +287,17 @@ class _Row:
         return value
 
     def refuse(self, message: str) -> Exception:
-        """Return an error about this row."""
         return refused(self.path, message, line=self.line)
 
 
 def is_moordyn(content: bytes) -> bool:
-    """True if a file has the two sections that every MoorDyn file must have."""
+    """True if a file has sections for line types and lines, which every MoorDyn file needs."""
     text = content.decode("latin-1").lower()
     found = {_section(line) for line in text.splitlines() if line.strip().startswith("---")}
     return b"\0" not in content and {"types", "lines"} <= found
 
 
 def _read_sections(path: Path) -> tuple[dict[str, list[_Row]], dict[str, str]]:
-    """Read tables and options of a file; rows with too few words are rejected."""
     tables, options = defaultdict[str, list[_Row]](list), dict[str, str]()
     current, headings, skip = "", list[str](), 0
     for number, text in enumerate(read_text(path).splitlines(), 1):
@@ -370,11 +343,6 @@ def _lay_net(file: _File, path: Path) -> None:
     """Divide the lines into legs.
 
     A leg ends at a point that is held, that is a free end, or that joins three or more lines.
-
-    Raises
-    ------
-    InputError
-        Lines form a ring without a point that is held.
     """
     breaks = [name for name, met in file.at.items() if len(met) != 2 or _is_held(file.points[name])]
     left, placed = list(file.lines), set[str]()
@@ -408,9 +376,9 @@ def _is_anchor(file: _File, name: str) -> bool:
 
 
 def _lay_leg(file: _File, names: list[str], lines: list[_Row], placed: set[str]) -> None:
-    """Add a leg from its upper end; a part at a point belongs to the first leg that reaches it."""
+    # a part at a point belongs to the first leg that reaches the point
     items = file.along(names, lines, placed)
-    upper, lower = (_end(file, at) for at in (names[0], names[-1]))
+    upper, lower = (_connection(file, at) for at in (names[0], names[-1]))
     if _is_anchor(file, names[-1]):
         point = file.points[names[-1]]
         items.append(model.ImportedPiece(_anchor_of(point, file.depth)))
@@ -420,7 +388,7 @@ def _lay_leg(file: _File, names: list[str], lines: list[_Row], placed: set[str])
     file.design.lay(items, upper, lower)
 
 
-def _end(file: _File, name: str) -> str:
+def _connection(file: _File, name: str) -> str:
     point = file.points[name]
     if _is_held(point):
         east, north, up = (point.number(axis) for axis in "xyz")

@@ -33,11 +33,9 @@ _LEAST = 1e-3  # kg/m: minimum mass of a line type, and of the water that it dis
 
 @dataclass
 class _Point:
-    """A point of the file, with the load on it and its kind ("Fixed" or "Free")."""
-
     place: Coordinates
     load: PartLoad
-    kind: str = "Free"
+    kind: str = "Free"  # or "Fixed"
 
 
 @dataclass
@@ -52,7 +50,7 @@ class _Length:
 
 @dataclass
 class _System:
-    """Line types, points and lines of the file, collected leg by leg, each from its lower end up.
+    """Contents of the file, collected leg by leg, each leg from its lower end up.
 
     `here` is the point to which the next length is attached.
     """
@@ -66,19 +64,16 @@ class _System:
     here: _Point = field(init=False)
 
     def begin(self, place: Coordinates, kind: str) -> None:
-        """Start a line at a new point."""
         self.here = _Point(place, PartLoad(self.density), kind)
         self.points.append(self.here)
 
-    def begin_at(self, node: str, place: Coordinates) -> None:
-        """Start a leg at the point of a node; the first leg at the node creates this point."""
+    def begin_at_node(self, node: str, place: Coordinates) -> None:
         if node not in self.joined:
             self.begin(place, "Free")
             self.joined[node] = self.here
         self.here = self.joined[node]
 
-    def end_at(self, node: str) -> None:
-        """Merge the point `here` with the point of a node."""
+    def end_at_node(self, node: str) -> None:
         last = self.here
         if node not in self.joined:
             self.joined[node] = last
@@ -91,13 +86,11 @@ class _System:
                 line.upper = self.here
 
     def line(self, name: str, figures: str, length: float, to: Coordinates) -> None:
-        """Add an unstretched length [m] of a line type, from the point `here` up to a new point."""
         below, chosen = self.here, unique_name(self.types, name, figures)
         self.begin(to, "Free")
         self.lines.append(_Length(chosen, below, self.here, length))
 
     def rows(self) -> tuple[list[str], list[str]]:
-        """Return the rows of the point table and of the line table."""
         points, numbers = [], {id(point): n for n, point in enumerate(self.points, 1)}
         for number, point in enumerate(self.points, 1):
             load, (x, y, depth) = point.load, point.place
@@ -112,7 +105,7 @@ class _System:
         return points, lines
 
     def figures(self, load: PartLoad, stiffness: float) -> str:
-        """Return the values of a line type as text, from its load per metre and its EA [N]."""
+        """Return the values of a line type, from its load per metre and its EA [N]."""
         mass = max(load.mass, _LEAST - load.net / self.gravity)
         volume = (mass + load.net / self.gravity) / self.density
         across = sqrt(4.0 * volume / pi)
@@ -156,10 +149,9 @@ def write_moordyn(exported: ExportedDesign) -> Exported:
 
 
 def _lay_line(system: _System, design: ExportedLine) -> None:
-    """Add a line or a leg, beginning at its lower end."""
     paths, (top, bottom) = design.paths(), design.ends or (EndKeys(), None)
     if bottom is not None and bottom.join is not None:
-        system.begin_at(bottom.join, place_along(paths[-1], 1.0))
+        system.begin_at_node(bottom.join, place_along(paths[-1], 1.0))
     else:
         hangs = bottom is not None and bottom.free
         system.begin(place_along(paths[-1], 1.0), "Free" if hangs else "Fixed")
@@ -168,7 +160,7 @@ def _lay_line(system: _System, design: ExportedLine) -> None:
         members = list(group)
         if flexible:
             for i, part in members:
-                _lay(system, part, paths[i])
+                _lay_flexible(system, part, paths[i])
             continue
         upper = members[-1][0]
         floats = upper == 0 and top.free
@@ -181,20 +173,16 @@ def _lay_line(system: _System, design: ExportedLine) -> None:
         if floats:
             _lay_float(system, design, paths[0])
     if top.join is not None:
-        system.end_at(top.join)
+        system.end_at_node(top.join)
     elif not top.free or design.afloat:
         system.here.kind = "Fixed"
 
 
-def _lay(system: _System, part: ExportedPart, path: Floats) -> None:
-    """Add a cable or chain from its lower end up, divided at its clamps.
-
-    The cable or chain is also divided into short lengths, because MoorDyn starts from the shape of
-    each length in still water.
-    """
+def _lay_flexible(system: _System, part: ExportedPart, path: Floats) -> None:
     load = PartLoad(system.density)
     load.add(part)
     figures = system.figures(load, part.stiffness)
+    # lengths are short, because MoorDyn starts from the shape of each length in still water
     count = min(max(round(part.length / _LENGTH), 1), _MOST)
     cuts: dict[float, list[ExportedPart]] = {part.length * k / count: [] for k in range(count)}
     for clamp, at in part.clamps:
@@ -211,7 +199,6 @@ def _lay(system: _System, part: ExportedPart, path: Floats) -> None:
 
 
 def _lay_rigid(system: _System, parts: list[ExportedPart], top: Coordinates) -> None:
-    """Add consecutive rigid pieces as one stiff length, or as a load if they have no length."""
     load, length = PartLoad(system.density), sum(part.length for part in parts)
     if length <= 0.0:
         load = system.here.load
@@ -220,7 +207,7 @@ def _lay_rigid(system: _System, parts: list[ExportedPart], top: Coordinates) -> 
     if length <= 0.0:
         return
     name = _word("_and_".join(dict.fromkeys(part.use for part in parts[:2])))
-    system.line(name, system.figures(load.per_metre(length), _stiff(length)), length, top)
+    system.line(name, system.figures(load.per_metre(length), _rigid_stiffness(length)), length, top)
 
 
 def _lay_float(system: _System, design: ExportedLine, path: Floats) -> None:
@@ -235,7 +222,7 @@ def _lay_float(system: _System, design: ExportedLine, path: Floats) -> None:
     length = part.length * below
     if length > 0.0:
         own = PartLoad(system.density, mass=_OWN * part.likely_mass).per_metre(length)
-        figures = system.figures(own, _stiff(length))
+        figures = system.figures(own, _rigid_stiffness(length))
         system.line("float", figures, length, place_along(path, 1.0 - below))
         system.here.load.mass -= own.mass * length
     system.here.load.add_whole(part, design.riding[1])
@@ -245,8 +232,7 @@ def _lay_float(system: _System, design: ExportedLine, path: Floats) -> None:
         system.here.load.area += shown - part.area(system.density)
 
 
-def _stiff(length: float) -> float:
-    """Return the stiffness EA that represents a rigid length [N]."""
+def _rigid_stiffness(length: float) -> float:
     return _RIGID * min(length / _SHORT, 1.0)
 
 
@@ -288,7 +274,6 @@ def _text(design: ExportedLine, system: _System, lost: tuple[str, ...]) -> str:
 
 
 def _current_profile(design: ExportedLine) -> bytes:
-    """Return the content of the current file, from below the seabed to above the water."""
     rows = [[0.0 - row[0], *row[1:4]] for row in reversed(design.levels)]
     rows = [[rows[0][0] - 10.0, *rows[0][1:]], *rows, [10.0, *rows[-1][1:]]]
     lines = [

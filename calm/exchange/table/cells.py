@@ -160,7 +160,6 @@ def unit_of_heading(heading: str, what: str) -> ColumnUnit | None:
 
 
 def _unit(text: str, what: str) -> ColumnUnit | None:
-    """Parse a text as a unit of the quantity `what`; return None if it is not such a unit."""
     dimension = _DIMENSIONS.get(what, "")
     for each, scale, by_mass in (
         (dimension, 1.0, False),
@@ -180,10 +179,6 @@ def _unit(text: str, what: str) -> ColumnUnit | None:
 
 
 def _factor(text: str, dimension: str) -> float | None:
-    """Return the factor from a unit to SI; None if the unit is unknown.
-
-    Units are recognised in several languages, in upper and lower case.
-    """
     if dimension not in DIMENSIONS or text.lower() in _AMBIGUOUS:
         return None
     known = DIMENSIONS[dimension].units
@@ -343,7 +338,7 @@ def read_sheets(path: Path) -> ReadSheets:
     if is_workbook(content):
         sheets, hidden = _workbook(path, content)
     else:
-        sheets, hidden = {"": cells_in(_text(path, content))}, {}
+        sheets, hidden = {"": cells_in(_decoded(path, content))}, {}
     for rows in sheets.values():
         if len(rows) > _MOST_ROWS or any(len(row) > _MOST_COLUMNS for row in rows):
             raise refused(path, f"has more than {_MOST_ROWS} rows or {_MOST_COLUMNS} columns")
@@ -352,7 +347,6 @@ def read_sheets(path: Path) -> ReadSheets:
 
 
 def _cleaned(rows: SheetRows) -> SheetRows:
-    """Remove comments, superfluous blanks, and empty cells at the end of rows."""
     cleaned = []
     for row in rows:
         cells = [one if isinstance(one, WorkbookNumber) else " ".join(one.split()) for one in row]
@@ -363,8 +357,7 @@ def _cleaned(rows: SheetRows) -> SheetRows:
     return cleaned
 
 
-def _text(path: Path, content: bytes) -> str:
-    """Decode a text file in UTF-8, in UTF-16 with a byte-order mark, or in Windows-1252."""
+def _decoded(path: Path, content: bytes) -> str:
     if content.startswith(_UTF_16):
         return content.decode("utf-16", "replace")
     if b"\0" in content:
@@ -392,11 +385,10 @@ def _sheets(content: bytes) -> tuple[dict[str, SheetRows], dict[str, str]]:
     }
     visible = python_calamine.SheetVisibleEnum.Visible
     whole = {each.name: "the sheet" for each in book.sheets_metadata if each.visible != visible}
-    return rows, _hidden_within(content) | whole
+    return rows, _hidden_rows_and_columns(content) | whole
 
 
-def _hidden_within(content: bytes) -> dict[str, str]:
-    """Describe the hidden rows and columns of an .xlsx file, by sheet name."""
+def _hidden_rows_and_columns(content: bytes) -> dict[str, str]:
     if not zipfile.is_zipfile(io.BytesIO(content)):
         return {}
     hidden = {}
@@ -404,16 +396,18 @@ def _hidden_within(content: bytes) -> dict[str, str]:
         parts = set(archive.namelist())
         if not {"xl/workbook.xml", "xl/_rels/workbook.xml.rels"} <= parts:
             return {}
-        relations = _tags(archive.read("xl/_rels/workbook.xml.rels"), "Relationship")
+        relations = _element_attributes(archive.read("xl/_rels/workbook.xml.rels"), "Relationship")
         targets = {each.get("Id"): each.get("Target", "").lstrip("/") for each in relations}
-        for sheet in _tags(archive.read("xl/workbook.xml"), "sheet"):
+        for sheet in _element_attributes(archive.read("xl/workbook.xml"), "sheet"):
             target = targets.get(sheet.get("r:id"), "")
             part = target if target in parts else f"xl/{target}"
             if part not in parts:
                 continue
             text = archive.read(part)
-            rows = [each.get("r", "?") for each in _tags(text, "row") if _is_hidden(each)]
-            columns = sum(_is_hidden(each) for each in _tags(text, "col"))
+            rows = [
+                each.get("r", "?") for each in _element_attributes(text, "row") if _is_hidden(each)
+            ]
+            columns = sum(_is_hidden(each) for each in _element_attributes(text, "col"))
             within = [f"row{'s' * (len(rows) > 1)} {', '.join(rows[:_SHOWN])}"] if rows else []
             within += ["columns"] if columns else []
             if within:
@@ -421,8 +415,7 @@ def _hidden_within(content: bytes) -> dict[str, str]:
     return hidden
 
 
-def _tags(text: bytes, name: str) -> list[dict[str, str]]:
-    """Return the attributes of all XML elements with a given name."""
+def _element_attributes(text: bytes, name: str) -> list[dict[str, str]]:
     found = re.findall(rf"<(?:\w+:)?{name}\s([^<>]*)>", text.decode("utf-8", "replace"))
     return [dict(re.findall(r'([\w:]+)="([^"]*)"', each)) for each in found]
 

@@ -61,16 +61,15 @@ def _rigid(row: ListRow) -> _Definition:
         kept |= {"drag_area": 0.0, "cd": 1.0}
         guesses["drag_area"] = "the list has no size, so the drag is 0"
     else:
-        kept = {"diameter": across, "length": length or across, **_coefficient(row, kind)}
+        kept = {"diameter": across, "length": length or across, **_drag_coefficient(row, kind)}
     kept["buoyancy"] = lift
     _check_lift(row, kind, across, length)
-    kept |= _further(row, lift, "breaking_load")
+    kept |= _optional_values(row, lift, "breaking_load")
     kept["role"] = row.role if row.role in ROLES else role_of(row.name, lift)
     return kind, kept
 
 
 def _check_lift(row: ListRow, kind: str, across: float, length: float) -> None:
-    """Reject or report a net buoyancy that exceeds the weight of the displaced water."""
     if kind not in ("sphere", "cylinder"):
         return
     volume = math.pi * across**2 * max(across / 6.0, length / 4.0)
@@ -90,7 +89,7 @@ def _check_lift(row: ListRow, kind: str, across: float, length: float) -> None:
 
 
 def _shape(row: ListRow) -> tuple[str, float]:
-    """Choose the kind of a rigid piece from its size, and return it with its diameter [m].
+    """Choose kind and diameter [m] of a rigid piece from its size.
 
     In a list with both widths and diameters, a piece with a diameter is a sphere. In other lists, a
     float that is hardly longer than wide is a sphere.
@@ -124,7 +123,7 @@ def _line(row: ListRow) -> _Definition:
         kept["cn"] = row.figure("drag_area") / across
         kept["ct"] = row.figure("tangential_area") / (math.pi * across)
     else:
-        kept |= _coefficient(row, kind)
+        kept |= _drag_coefficient(row, kind)
         if "area" in row.figures:
             kept["cn"] = float(kept["cn"]) * row.figure("area") / across
     if lift > 0.0:
@@ -132,27 +131,23 @@ def _line(row: ListRow) -> _Definition:
     else:
         kept["weight"] = 0.0 - lift
         row.guesses["weight"] = row.guesses.get("buoyancy", row.guesses.get("weight", ""))
-    kept |= _further(row, lift, "stiffness", "breaking_load")
+    kept |= _optional_values(row, lift, "stiffness", "breaking_load")
     material = row.figure("material")
     if "stiffness" not in kept and material in range(1, len(MODULI) + 1):
         kept["stiffness"] = MODULI[round(material) - 1] * math.pi / 4.0 * across**2
     return kind, kept
 
 
-def _coefficient(row: ListRow, kind: str) -> dict[str, model.FigureOrWord]:
-    """Return the drag coefficient in the list, else guess a typical value for the kind."""
+def _drag_coefficient(row: ListRow, kind: str) -> dict[str, model.FigureOrWord]:
     key = "cx" if kind == "sphere" else "cn"
     guess = f"the list has no value; the usual value for a {kind} is used"
     row.guesses[key] = row.guesses.get("cd", "") if "cd" in row.figures else guess
     return {key: row.figures.get("cd", _USUAL[kind])}
 
 
-def _further(row: ListRow, lift: float, *names: str) -> dict[str, model.FigureOrWord]:
-    """Return the mass and other optional values.
-
-    A mass that is too small for the weight in water is omitted.
-    """
+def _optional_values(row: ListRow, lift: float, *names: str) -> dict[str, model.FigureOrWord]:
     mass = row.figure("mass")
+    # a mass that is too small for the weight in water is omitted
     heavy = mass > 0.0 and mass * KILOGRAM_FORCE >= max(-lift, 0.0)
     named = {name: row.figure(name) for name in names if row.figure(name) > 0.0}
     return {"mass": mass, **named} if heavy else {**named}

@@ -156,15 +156,15 @@ class ListHeadings:
 def headings_of(rows: SheetRows, given: Mapping[str, str]) -> ListHeadings | None:
     """Find the headings of a sheet.
 
-    Return None if no row has a heading for the name together with a heading for a length or a
-    force. Columns in `given` take precedence over columns recognised by their headings.
+    Return None if no row has a heading for the name together with a heading for a length, a mass or
+    a force. Columns in `given` take precedence over columns recognised by their headings.
     """
     best, highest = None, (0, 0)
     for i in range(min(len(rows), _SEARCHED)):
         cells = _with_units(rows, i)
-        found = _columns(cells, given, rows[i + 1 : i + 31])
+        found = _recognised_columns(cells, given, rows[i + 1 : i + 31])
         if "name" not in found and len(found) >= 2:
-            index = _unnamed(rows, i, found)
+            index = _names_without_heading(rows, i, found)
             if index is not None:
                 found["name"] = ListColumn(index, "")
         if "name" not in found or not _MEASURES & found.keys():
@@ -202,11 +202,9 @@ def check_given(sheets: Mapping[str, SheetRows], given: Mapping[str, str], path:
             raise refused(path, f"--columns: no column is called `{heading}` ({what})")
 
 
-def _columns(row: list[str], given: Mapping[str, str], below: SheetRows) -> dict[str, ListColumn]:
-    """Find the columns in a row of headings.
-
-    The cells below the heading of the names must contain words.
-    """
+def _recognised_columns(
+    row: list[str], given: Mapping[str, str], below: SheetRows
+) -> dict[str, ListColumn]:
     found: dict[str, ListColumn] = {}
     plain = [_plain(cell) for cell in row]
     if any(_SPANISH.search(cell) for cell in plain):
@@ -227,24 +225,20 @@ def _columns(row: list[str], given: Mapping[str, str], below: SheetRows) -> dict
             other = _BESIDE.search(cell) or _RUNNING.search(cell) if what == "length" else None
             if what in found or i in taken or not cell or along or other:
                 continue
-            if re.search(pattern, cell) and (what != "count" or not _worded(below, i)):
+            if re.search(pattern, cell) and (what != "count" or not _has_words(below, i)):
                 found[what] = _with_twin(_column(what, i, row[i]), what, row, taken)
     bare = [i for i, cell in enumerate(plain) if i not in taken and not _NUMBERED.search(cell)]
     called = (i for pattern in _NAMES for i in bare if re.search(pattern, plain[i]))
-    named = next((i for i in called if _worded(below, i)), None)
+    named = next((i for i in called if _has_words(below, i)), None)
     if named is not None:
         found.setdefault("name", ListColumn(named, row[named]))
-    elif "kind" in found and _worded(below, found["kind"].index):
+    elif "kind" in found and _has_words(below, found["kind"].index):
         found.setdefault("name", found["kind"])
-    _resolve(found)
+    _resolve_ambiguous(found)
     return found
 
 
 def _with_twin(column: ListColumn, what: str, row: list[str], taken: set[int]) -> ListColumn:
-    """Return a column with its twin, if another column has the same heading.
-
-    One of the two must be per metre.
-    """
     taken.add(column.index)
     stem = _UNIT.sub("", _plain(column.heading, keep="/"))
     for i, heading in enumerate(row if what in _MEASURES else ()):
@@ -256,18 +250,12 @@ def _with_twin(column: ListColumn, what: str, row: list[str], taken: set[int]) -
     return column
 
 
-def _worded(below: SheetRows, index: int) -> bool:
-    """True if most cells of a column contain words."""
+def _has_words(below: SheetRows, index: int) -> bool:
     cells = [row[index] for row in below if index < len(row) and row[index]]
     return 2 * sum(bool(re.search(r"[^\W\d]{2}", cell)) for cell in cells) > len(cells)
 
 
-def _resolve(found: dict[str, ListColumn]) -> None:
-    """Resolve ambiguous headings.
-
-    If the list has no lengths, its heights are used as lengths. Weights are weights in air if the
-    list also has buoyancies.
-    """
+def _resolve_ambiguous(found: dict[str, ListColumn]) -> None:
     plain = {what: _plain(column.heading) for what, column in found.items()}
     tall = r"(height|hauteur|hohe|altura)\b(?!.*(bottom|btm|fond|grund|above))"
     if "length" not in found and re.match(tall, plain.get("height", "")):
@@ -280,10 +268,6 @@ def _resolve(found: dict[str, ListColumn]) -> None:
 
 
 def _with_units(rows: SheetRows, i: int) -> list[str]:
-    """Append to each heading the unit in the row below.
-
-    A row without numbers is a row of units if at least half of its cells are units.
-    """
     row = rows[i]
     below = rows[i + 1] if i + 1 < len(rows) else []
     cells = [cell for cell in below if cell]
@@ -298,8 +282,7 @@ def _with_units(rows: SheetRows, i: int) -> list[str]:
 
 
 def _is_unit(cell: str) -> bool:
-    """True if a cell below a heading is a unit, such as `(kg)`, `m` or `off btm (m)`."""
-    inside = re.search(r"[(\[]([^()\[\]]*)[)\]]\s*$", cell)
+    inside = re.search(r"[(\[]([^()\[\]]*)[)\]]\s*$", cell)  # as in `off btm (m)`
     for what in ("length", "weight", "area"):
         try:
             if unit_called(inside[1] if inside else cell, what):
@@ -309,8 +292,7 @@ def _is_unit(cell: str) -> bool:
     return False
 
 
-def _unnamed(rows: SheetRows, i: int, found: dict[str, ListColumn]) -> int | None:
-    """Return the index of the first column of words without a heading; None if there is none."""
+def _names_without_heading(rows: SheetRows, i: int, found: dict[str, ListColumn]) -> int | None:
     taken = {column.index for column in found.values()}
     below = rows[i + 1 : i + 16]
     for index in range(min(3, max(map(len, below), default=0))):
@@ -346,7 +328,6 @@ def _column(what: str, index: int, heading: str) -> ListColumn:
 
 
 def _plain(text: str, keep: str = "") -> str:
-    """Convert a heading to lower case without accents; most signs become blanks."""
     spaced = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", text)  # buoyancyPerMeter
     decomposed = unicodedata.normalize("NFD", spaced.lower())
     letters = "".join(sign for sign in decomposed if not unicodedata.combining(sign))

@@ -1,7 +1,7 @@
 """Read element libraries, which supply values missing in a list.
 
-A library is the table of elements of Mooring Design & Dynamics, in character matrices, or a table
-or workbook whose sheets have headings.
+A library is either `mdcodes.mat` of Mooring Design & Dynamics, which has elements in character
+matrices, or a table or workbook whose sheets have headings.
 """
 
 from collections.abc import Iterable, Mapping
@@ -98,13 +98,12 @@ def complete_rows(rows: Iterable[ListRow], library: Library, source: str) -> Non
 
 
 def _of_matrices(path: Path) -> list[ListRow]:
-    """Return the elements in character matrices with one element per row, as in `mdcodes.mat`."""
     variables = read_variables(path, [*GROUPS, "format"])
     entries = [
         entry
         for group in GROUPS
         for text in names(variables.get(group))
-        if (entry := _entry(text, group, _width(variables))) is not None
+        if (entry := _entry(text, group, _name_width(variables))) is not None
     ]
     if not entries:
         raise refused(
@@ -113,8 +112,7 @@ def _of_matrices(path: Path) -> list[ListRow]:
     return entries
 
 
-def _width(variables: MatVariables) -> int:
-    """Return the width of the column of names in bytes, from the variable `format`."""
+def _name_width(variables: MatVariables) -> int:
     try:
         columns = variables.reals("format")
     except ValueError:
@@ -165,7 +163,6 @@ def _of_sheets(path: Path) -> Iterable[ListRow]:
 
 
 def _is_line(row: ListRow, title: str) -> bool:
-    """True if an element is a line, with values per metre."""
     floats = row.figures.get("buoyancy", 0.0) > 0.0 and row.figures.get("diameter", 0.0) > 0.0
     if abs(row.figures.get("length", 1.0) - 1.0) > _A_METRE or (floats and "width" in row.figures):
         return False

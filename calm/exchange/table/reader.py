@@ -39,8 +39,8 @@ def read_list(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
     Raises
     ------
     InputError
-        No headings are recognised, a value is missing, or there is no anchor at either end of the
-        list.
+        No headings are recognised, a value is missing, or neither end of the list is an anchor or
+        a float.
     """
     columns, elements = options.columns, options.elements
     sheets, hidden = read_sheets(path)
@@ -51,14 +51,14 @@ def read_list(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
             "is a library of elements, not a mooring; use it with --elements FILE when you import "
             "a list. If one of its sheets is a list of pieces, select it with --sheet NAME",
         )
-    lists = _named(sheets, options.sheet, path)
+    lists = _selected_sheets(sheets, options.sheet, path)
     library = read_library(elements) if elements is not None else {}
     design = model.ImportedDesign("a list", path.stem, [], None, notes=[_NOTE])
     design.water = _water(sheets, design, path)
     problems: list[str] = []
     remarks = list[model.Remark]()
     headings = None
-    if chosen := _headed(lists, hidden, columns, path, remarks):
+    if chosen := _sheet_with_headings(lists, hidden, columns, path, remarks):
         sheet, cells, headings = chosen
         problems += headings.problems
         remarks += _unit_remarks(headings)
@@ -71,16 +71,16 @@ def read_list(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
         if headings.others:
             design.dropped.append(model.Remark("columns", ", ".join(headings.others)))
         problems += growing_lengths(rows)
-        design.understood = _understood(sheet, headings, rows)
+        design.understood = _summary(sheet, headings, rows)
     else:
-        rows = _names(lists, design, path, library)
+        rows = _rows_of_names(lists, design, path, library)
     if elements is not None:
         complete_rows(rows, library, elements.name)
     count_lines(rows, headings.columns if headings else {})
     if sum(row.count for row in rows) > model.MOST_PIECES:
         raise refused(path, f"has more than {model.MOST_PIECES} pieces")
     rows = _from_the_top(rows, path, design)
-    if headings and "depth" in headings.columns and not _go_down(rows):
+    if headings and "depth" in headings.columns and not _depths_increase(rows):
         heading = headings.columns["depth"].heading
         remarks.append(
             model.Remark(f"column {heading}", ("does not increase down the line and was ignored"))
@@ -97,10 +97,9 @@ def read_list(path: Path, options: model.ImportOptions) -> model.ImportedDesign:
     return design
 
 
-def _named(
+def _selected_sheets(
     sheets: Mapping[str, SheetRows], name: str | None, path: Path
 ) -> Mapping[str, SheetRows]:
-    """Return only the sheet of a given name; return all sheets if no name is given."""
     if name is None:
         return sheets
     if name not in sheets:
@@ -108,19 +107,14 @@ def _named(
     return {name: sheets[name]}
 
 
-def _headed(
+def _sheet_with_headings(
     sheets: Mapping[str, SheetRows], hidden: Mapping[str, str], columns: Mapping[str, str],
     path: Path, remarks: list[model.Remark],
 ) -> tuple[str, SheetRows, ListHeadings] | None:  # fmt: skip
-    """Return name, cells and headings of the only sheet with headings.
+    """Return name, cells and headings of the only sheet with headings, or None if there is none.
 
-    Return None if no sheet has headings. A hidden sheet is used only if no visible sheet has
-    headings. Remarks about hidden sheets and parts are added to `remarks`.
-
-    Raises
-    ------
-    InputError
-        Several visible sheets have headings.
+    A hidden sheet is used only if no visible sheet has headings. Remarks about hidden sheets and
+    parts are added to `remarks`.
     """
     found = [
         (name, cells, headings)
@@ -144,8 +138,7 @@ def _headed(
     return shown[0]
 
 
-def _understood(sheet: str, headings: ListHeadings, rows: list[ListRow]) -> str:
-    """Summarise how the list was read: number of pieces, total length, and columns used."""
+def _summary(sheet: str, headings: ListHeadings, rows: list[ListRow]) -> str:
     pieces = [row for row in rows if "at" not in row.figures]
     length = sum(row.count * row.figure("length") for row in pieces)
     columns = ", ".join(
@@ -158,7 +151,6 @@ def _understood(sheet: str, headings: ListHeadings, rows: list[ListRow]) -> str:
 
 
 def _unit_remarks(headings: ListHeadings) -> list[model.Remark]:
-    """Return remarks about assumed force units, for headings without a unit."""
     usual = {"buoyancy": "kg", "weight": "kg", "stiffness": "N", "breaking_load": "N"}
     return [
         model.Remark(f"column {column.heading}", f"has no unit; {usual[what]} is assumed")
@@ -167,14 +159,9 @@ def _unit_remarks(headings: ListHeadings) -> list[model.Remark]:
     ]
 
 
-def _names(
+def _rows_of_names(
     sheets: Mapping[str, SheetRows], design: model.ImportedDesign, path: Path, library: Library
 ) -> list[ListRow]:
-    """Read a list that contains only names, from its longest sheet.
-
-    The first name is that of the mooring, unless the library has an element of that name. The
-    values of the pieces are those of the library.
-    """
     longest = max(sheets.values(), key=len, default=[])
     rows = _names_in(longest)
     filled = sum(bool(cell) for row in longest for cell in row)
@@ -189,7 +176,7 @@ def _names(
             f"has names but no values (`{rows[0].name}`, `{rows[1].name}` …); "
             "add the library of these elements with --elements FILE",
         )
-    if key_of(rows[0].name) not in library:
+    if key_of(rows[0].name) not in library:  # the name of the mooring
         if key_of(rows[0].name) != "name":
             design.name = rows[0].name
         rows = rows[1:]
@@ -197,7 +184,6 @@ def _names(
 
 
 def _names_in(cells: SheetRows) -> list[ListRow]:
-    """Return a row for each name, from the column of a sheet with the most words."""
     words = (i for row in cells for i, cell in enumerate(row) if re.search(r"[^\W\d]{2}", cell))
     counts = Counter(words)
     best = max(range(max(map(len, cells), default=1)), key=counts.__getitem__)
@@ -211,7 +197,6 @@ def _names_in(cells: SheetRows) -> list[ListRow]:
 def _water(
     sheets: Mapping[str, SheetRows], design: model.ImportedDesign, path: Path
 ) -> model.ImportedWater | None:
-    """Read the environment from a sheet of Mooring Design & Dynamics, whose heights are `z`."""
     for rows in sheets.values():
         headings = [cell.lower() for cell in rows[0]]
         if not {"z", "u"} <= set(headings):
@@ -230,7 +215,6 @@ def _water(
 
 
 def _figure(row: list[str], index: int, path: Path) -> float:
-    """Parse a number of the sheet; an empty cell is 0."""
     found = number(row[index])
     if found.wrong or found.rest:
         raise refused(path, f"water: {found.wrong or f'`{row[index]}` is not a number'}")
@@ -238,10 +222,6 @@ def _figure(row: list[str], index: int, path: Path) -> float:
 
 
 def _from_the_top(rows: list[ListRow], path: Path, design: model.ImportedDesign) -> list[ListRow]:
-    """Sort rows from the top of the line down, with clamps after their piece.
-
-    The list may run from the top down or from the bottom up.
-    """
     pieces = [row for row in rows if "at" not in row.figures]
     if len(pieces) < 2:
         raise refused(path, f"has {len(pieces)} pieces; at least two are needed")
@@ -250,7 +230,7 @@ def _from_the_top(rows: list[ListRow], path: Path, design: model.ImportedDesign)
         design.notes.append(
             "The list runs from the anchor up; the mooring file has the reverse order."
         )
-        return _turned(rows)
+        return _reversed_rows(rows)
     if anchored and anchored[-1] == len(pieces) - 1:
         return rows
     lifts = [row.figures.get("buoyancy", 0.0) for row in (pieces[0], pieces[-1])]
@@ -264,24 +244,23 @@ def _from_the_top(rows: list[ListRow], path: Path, design: model.ImportedDesign)
         design.notes.append(
             "The list runs from the lower end up; the mooring file has the reverse order."
         )
-        rows = _turned(rows)
+        rows = _reversed_rows(rows)
     design.guessed.append(model.Remark("line.anchor", "the list has no anchor; one is added"))
     return [*rows, ListRow(0, "anchor", kind="anchor", role="anchor")]
 
 
-def _go_down(rows: list[ListRow]) -> bool:
-    """True if depths are positions on the line: they differ, and never decrease from row to row."""
+def _depths_increase(rows: list[ListRow]) -> bool:
     depths = [row.figures["depth"] for row in rows if "depth" in row.figures]
     return len({*depths}) > 1 and all(upper <= lower for upper, lower in pairwise(depths))
 
 
 def _planned_depth(row: ListRow, component: model.ImportedComponent) -> float | None:
-    """Return the depth that the list gives for a single float, instrument or clamp [m]."""
     of_its_own = "at" in row.figures or component.figures.get("role") in ("float", "instrument")
     return row.figures.get("depth") if of_its_own and row.count == 1 else None
 
 
-def _turned(rows: list[ListRow]) -> list[ListRow]:
+def _reversed_rows(rows: list[ListRow]) -> list[ListRow]:
+    # clamps remain after their piece
     pieces = accumulate(int("at" not in row.figures) for row in rows)
     numbered = sorted(zip(pieces, rows, strict=True), key=lambda pair: -pair[0])
     return [row for _, row in numbered]

@@ -1,4 +1,4 @@
-"""Read the rows of a list in SI units, with notes on how each was interpreted."""
+"""Read the rows of a list in SI units, with notes on the interpretation of each row."""
 
 import math
 import re
@@ -41,7 +41,7 @@ class ListRow:
     Attributes
     ----------
     metre : names of the values that are per metre
-    line : whether the row is a cable or chain; if None, the name decides
+    line : whether the row is a cable or chain; if None, role, kind and name decide
     hint : advice on missing values
     problems : messages about mistakes
     """
@@ -144,13 +144,12 @@ def rows_of(
         if several and row.count == 1 and not (row.is_line and not _LENGTHS.match(name)):
             remark = f"read as one piece with the values of its row, not as {several[1]} pieces"
             guessed.append(model.Remark(row.where, remark))
-        _divide(row, known, guessed)
+        _divide_totals(row, known, guessed)
         rows.append(row)
     return rows
 
 
 def _row(cells: list[str], row: ListRow, known: dict[str, ListColumn], decimal: str) -> ListRow:
-    """Convert the cells of a row to texts and values."""
     row.label, row.kind, row.role = (
         cell_of(cells, known.get(what)).removeprefix("'") for what in ("label", "kind", "role")
     )
@@ -194,8 +193,7 @@ def _row(cells: list[str], row: ListRow, known: dict[str, ListColumn], decimal: 
     return row
 
 
-def _divide(row: ListRow, known: dict[str, ListColumn], guessed: list[model.Remark]) -> None:
-    """Divide values by the count of pieces in a row, if the heading shows that they are totals."""
+def _divide_totals(row: ListRow, known: dict[str, ListColumn], guessed: list[model.Remark]) -> None:
     totals = [what for what in _SHARED if what in row.figures and what in known]
     totals = [what for what in totals if known[what].whole and what not in row.metre]
     if row.count == 1 or not totals:
