@@ -150,7 +150,7 @@ def _strumming_cn(cable: Cable, cn: float, solver: Solver) -> float:
 
 
 def _mass(cable: Cable) -> float:
-    """Return the mass per metre [kg/m], if necessary from the weight in water and the diameter."""
+    """Return the mass per metre [kg/m], if necessary from weight in water and diameter."""
     if cable.mass is not None:
         return cable.mass
     displaced = CATALOGUE_DENSITY * pi * cable.diameter**2 / 4
@@ -186,7 +186,7 @@ def datasheet(definition: Defined, catalogue: files.Catalogue | None = None) -> 
     its parts, and if no part overrides values of its component. Otherwise return None.
     """
     if isinstance(definition, files.Component):
-        return _of_component(definition, 1.0)
+        return _component_datasheet(definition, 1.0)
     if catalogue is None or isinstance(definition, Outline):
         return None
     sheets = []
@@ -198,7 +198,7 @@ def datasheet(definition: Defined, catalogue: files.Catalogue | None = None) -> 
             metres = parse_quantity(item["length"], "length") if "length" in item else 1.0
         except QuantityError:
             return None
-        sheets.append(_of_component(component, metres))
+        sheets.append(_component_datasheet(component, metres))
     names = [each.name for each in fields(Datasheet)]
     return Datasheet(*(sum(getattr(sheet, name) or 0.0 for sheet in sheets) for name in names))
 
@@ -212,15 +212,13 @@ def _items(parts: tuple[dict[str, Any], ...]) -> Iterator[Mapping[str, Any]]:
 
 
 def _component(catalogue: files.Catalogue, item: Mapping[str, Any]) -> files.Component | None:
-    """Return the component that an item uses without changes, or None."""
     if not item.keys() <= _PART_KEYS or catalogue.entry(str(item.get("use"))) is None:
         return None
     found = catalogue.get(str(item["use"]))
     return found if isinstance(found, files.Component) else None
 
 
-def _of_component(component: files.Component, metres: float) -> Datasheet:
-    """Return the derived values of a rigid piece, or of a length of cable or chain [m]."""
+def _component_datasheet(component: files.Component, metres: float) -> Datasheet:
     if isinstance(component, Anchor):
         return Datasheet(component.net_buoyancy, None, component.kt, None)
     kn, kt, along = drag_of(component)

@@ -238,8 +238,10 @@ class Acceptance:
         return (self.of(rule.find(one, mooring, environment, situation)) for one in verdicts)
 
     def _estimated(self, finding: Finding) -> Finding:
-        """Change a pass that relies on a lower bound to estimated, and a failure that relies on it
-        to unknown. A failure by a specified value remains a failure.
+        """Change the state of a finding that relies on the lower bound of an estimate.
+
+        A pass becomes estimated, and a failure becomes unknown. A failure by a specified value
+        remains a failure.
         """
         part, figures = self.parts.get(finding.component or ""), RULES[finding.rule].figures
         if part is None or not figures or finding.state not in (State.PASS, State.FAIL):
@@ -285,7 +287,7 @@ class Acceptance:
 def _accepted(finding: Finding, accept: Accept) -> Finding:
     """Mark a finding as accepted, unless the tension exceeds the accepted load.
 
-    The accepted load becomes the limit of a finding without limit.
+    If the finding has no limit, the accepted load becomes the limit.
     """
     accepted = finding.but(state=State.ACCEPTED, accept=accept, unaccepted=finding.state)
     load, tension = accept.load, finding.value

@@ -147,11 +147,8 @@ class MissingFigure:
 
 
 def _with_fields(kind: type[_Made], values: dict[str, Any]) -> _Made:
-    """Create an instance of a frozen dataclass directly from the values of its fields.
-
-    The constructor and `dataclasses.replace` are too slow for the tens of thousands of verdicts in
-    a check.
-    """
+    # the constructor and `dataclasses.replace` are too slow for the tens of thousands of verdicts
+    # in a check
     made = object.__new__(kind)
     vars(made).update(values)
     return made
@@ -503,7 +500,6 @@ def governing_of_each_rule(findings: Iterable[Finding]) -> list[Finding]:
 
 
 def _is_overridden(finding: Finding) -> bool:
-    """Return whether an accepted finding is a failure, or has a utilisation above 100 %."""
     fails = finding.unaccepted is State.FAIL or (finding.utilisation or 0.0) > 1.0
     return finding.state is State.ACCEPTED and fails
 

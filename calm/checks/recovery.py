@@ -163,7 +163,6 @@ def lifts_of(line: Line, water: Water, result: LegResult) -> Floats:
 
 
 def _rise(line: Line, water: Water, top: float, settings: Settings) -> tuple[FreeMotion, bool]:
-    """Solve the rise of the whole line. The flag is true if the solution is for still water."""
     try:
         return solve_rise(line, water, top, settings), False
     except NoEquilibrium:
@@ -173,8 +172,7 @@ def _rise(line: Line, water: Water, top: float, settings: Settings) -> tuple[Fre
 def _risers(
     line: Line, water: Water, length: Floats, lifts: Floats, top: float, speed: float
 ) -> Iterator[tuple[int, float]]:
-    """Yield the pieces that are buoyant enough to surface on their own, and their surfacing times
-    [s].
+    """Yield each piece that is buoyant enough to surface alone, and its surfacing time [s].
 
     `length` are the stretched lengths [m] and `lifts` the net forces [N] of the pieces, both (n,).
     The upper end of the line is at the depth `top` [m] and rises with `speed` [m/s] at first. The

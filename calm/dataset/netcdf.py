@@ -127,7 +127,6 @@ def write_netcdf(
 
 
 def _take_room(handle: int, size: int) -> None:
-    """Extend a file to a minimum size, and reserve the disk space."""
     if hasattr(os, "posix_fallocate"):
         os.posix_fallocate(handle, 0, size)
         return
@@ -176,11 +175,9 @@ def _define(file: h5netcdf.File, layout: ResultLayout, variable: Variable, block
 
 
 def _text(value: str | float) -> str | float | np.bytes_:
-    """Convert a text to characters, which every tool can read; a text that is long or not ASCII
-    remains a string.
-    """
     if isinstance(value, float):
         return value
+    # every tool can read characters; long texts and other alphabets need a string
     return np.bytes_(value) if value.isascii() and len(value) < _LONG else value
 
 

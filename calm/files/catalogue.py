@@ -99,10 +99,7 @@ class Catalogue:
         return Catalogue(({entry.id: entry for entry in entries}, *self.levels))
 
     def _completed(self, entry: CatalogueEntry) -> CatalogueEntry:
-        """Merge an entry without `kind` with the definition of the same id in this catalogue.
-
-        Keys without a value are dropped. Assemblies have no values to complete.
-        """
+        """Merge an entry without `kind` with the definition of the same id in this catalogue."""
         below = self.entry(entry.id)
         given = {key: value for key, value in entry.section.data.items() if value is not None}
         section = entry.section.holding(given)

@@ -198,7 +198,10 @@ class WordIndex:
     def _ranked(
         self, hits: Iterable[Listed], terms: Sequence[Term], first: Sequence[str]
     ) -> list[Listed]:
-        """Sort components by `_rank`; those with ids in `first` come first."""
+        """Sort components: exact ids first, then ids in `first` in their order, then by `_rank`.
+
+        Components that match only through a synonym or their source do not move up by `first`.
+        """
         places = {id: number for number, id in enumerate(first)}
 
         def order(each: Listed) -> tuple[bool, int, bool, bool, int, int]:
@@ -248,7 +251,6 @@ class Term:
 
 
 def _terms(plain: str) -> list[Term]:
-    """Split a text without limits into words and sizes."""
     words = [Term(word, (word,)) for word in _words(_SIZE.sub(" ", plain))]
     sizes = [
         Term(found[0], tuple(_words(found[0])), _metres(*found.groups()))
@@ -258,7 +260,6 @@ def _terms(plain: str) -> list[Term]:
 
 
 def _parsed(text: str) -> tuple[str, list[Wanted]]:
-    """Split a text into plain words, in lower case, and limits."""
     parsed = [(word.casefold(), wanted(word)) for word in text.split()]
     limits = [limit for _, limit in parsed if limit is not None]
     return " ".join(word for word, limit in parsed if limit is None), limits
@@ -269,14 +270,13 @@ def _words(text: str) -> list[str]:
 
 
 def _metres(number: str, unit: str) -> float:
-    """Convert a size to metres: `1 1/4` and `1-1/4` inches are 1.25 inches."""
+    # `1 1/4` and `1-1/4` are both 1.25
     value = sum(float(Fraction(each.replace(",", "."))) for each in _words(number))
     return value * {"mm": 1e-3, "cm": 1e-2}.get(unit, 0.0254)
 
 
 @cache
 def _uses() -> Counter[str]:
-    """Count the uses of each component in the lines shipped with CALM."""
     files = sorted(shipped_folder("lines").glob("*.yaml"))
     return Counter(id for file in files for id in _USE_KEY.findall(file.read_text("utf-8")))
 

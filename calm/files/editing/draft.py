@@ -141,7 +141,7 @@ class Draft:
         above : at an index between two legs, True makes the item the first of the lower leg, and
             False makes it the last of the upper leg
         """
-        self._check_item(rows)
+        self._check_clamped_item(rows)
         return self._add(*self.lists.place_in(rows, index, above=above), [values])
 
     def delete(self, indices: Iterable[int], rows: Location = LINE) -> Draft:
@@ -211,8 +211,8 @@ class Draft:
         snippets : texts of the items, as returned by `copy`
         rows, above : as in `insert`
         """
-        self._check_item(rows)
-        worded = _worded(snippets)
+        self._check_clamped_item(rows)
+        worded = _parse_items(snippets)
         place = self.lists.place_in(rows, index, above=above)
         return self._add(*place, worded) if worded else self
 
@@ -283,8 +283,7 @@ class Draft:
         """Define a component in this file, replacing any definition with the same id."""
         return self.put_at((changes.NAMED[0], id), values)
 
-    def _check_item(self, rows: Location) -> None:
-        """Raise EditError if a list of clamps belongs to an item that does not exist."""
+    def _check_clamped_item(self, rows: Location) -> None:
         if rows[0] == LINE[0] and rows != LINE:
             own, index = self.lists.place(int(rows[1]), above=True)
             self._page.known(own, [index])
@@ -332,8 +331,7 @@ class Draft:
         return self._page.root.data
 
 
-def _worded(snippets: Iterable[str]) -> Worded:
-    """Parse items that `Draft.copy` returned."""
+def _parse_items(snippets: Iterable[str]) -> Worded:
     wordings = [read_snippet(snippet) for snippet in snippets]
     if None in wordings:
         raise changes.EditError("the pasted text is not a list of items")
