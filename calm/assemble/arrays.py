@@ -1,4 +1,4 @@
-"""Conversion of the pieces and environment in a mooring file to the arrays of the march."""
+"""Conversion of the pieces and environment in a mooring file to the arrays of the solver."""
 
 from collections import deque
 from collections.abc import Callable, Sequence
@@ -29,7 +29,7 @@ TOWED_SPHERE_CX = 0.90
 """
 
 DEEPEST = 11_000.0
-"""Default water depth of a tow [m], larger than that of the deepest trench."""
+"""Default water depth of a tow [m], larger than the depth of any trench."""
 
 LINEAR_WITHIN = 1e-5
 """Allowed relative error of linear interpolation of the sea water density between levels."""
@@ -214,8 +214,10 @@ def _hull(component: RigidComponent) -> Hull | None:
 
 
 def assemble_water(environment: Environment) -> Water:
-    """Build the water column. The levels of the current and density profiles are merged; viscosity
-    has its own levels. All values are linear between levels.
+    """Build the water column.
+
+    The levels of the current and density profiles are merged. Viscosity has its own levels. All
+    values are linear between levels.
     """
     flows = [environment.current, *_surface_drift(environment)]
     density_levels, density = _density(environment)

@@ -28,12 +28,11 @@ def net_buoyancy(component: files.Component, gravity: float) -> float:
 
 
 def mass_in_air(component: files.Component) -> float | None:
-    """Return the specified mass in air, or compute it from the weight in water [kg; kg/m for a
-    cable or chain].
+    """Return the mass in air [kg; kg/m for a cable or chain].
 
-    The conversion uses the displaced volume or, if that is unknown, the density of the material.
-    The default material of a chain or an anchor is steel. Return None if both the volume and the
-    density are unknown.
+    An unspecified mass is computed from the weight in water and the displaced volume. If the volume
+    is unknown, the density of the material is used. The default material of a chain or an anchor is
+    steel. Return None if both the volume and the density are unknown.
     """
     if component.mass is not None:
         return component.mass
@@ -52,8 +51,9 @@ def mass_in_air(component: files.Component) -> float | None:
 
 
 def drag_of(component: files.Component, solver: Solver | None = None) -> tuple[float, float, bool]:
-    """Return the drags Kn and Kt [N/(m/s)²; per metre for a cable or chain], and whether the drag
-    depends on the inclination of the axis to the flow.
+    """Return the drags Kn and Kt [N/(m/s)²; per metre for a cable or chain], and a flag.
+
+    The flag is true if the drag depends on the inclination of the axis to the flow.
 
     Parameters
     ----------
@@ -114,9 +114,11 @@ def cable_drag(component: FlexibleComponent, solver: Solver) -> tuple[float, flo
     """Return the drags Kn and Kt per metre of cable or chain [N/(m/s)²].
 
     A cable's Kn includes strumming. With Bourget & Marichal's law, however, Kn excludes strumming,
-    because the march computes the effect of strumming. Pode's constant friction is Kt = Ct ½ρ Cn D.
-    If a cable or chain has no Ct, Pode's law uses the default Ct π/Cn (0.012, 0.022 or 0.031,
-    depending on the finish), so that the friction is the same as in the quadratic law.
+    because the solver computes the effect of strumming.
+
+    Pode's constant friction is Kt = Ct ½ρ Cn D. If a cable or chain has no Ct, Pode's law uses the
+    default Ct π/Cn (0.012, 0.022 or 0.031, depending on the finish), so that the friction is the
+    same as in the quadratic law.
     """
     if isinstance(component, Cable):
         usual = drag.CABLE_CN, drag.CABLE_CT[component.finish or "smooth"]

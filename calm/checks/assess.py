@@ -3,8 +3,8 @@
 Each mooring is checked in each of its environments, and then for launch, recovery and breaks.
 
 If the inputs of the design have an `uncertainty`, each finding with a limit gets the probability
-that the limit is exceeded. To estimate it, random samples of the mooring are solved in the
-situation of the finding, and those that exceed the limit are counted. Solving a launch or an
+that the limit is exceeded. For this estimate, random samples of the mooring are solved in the
+situation of the finding, and the samples that exceed the limit are counted. Solving a launch or an
 ascent takes as long as solving many equilibria, so launch, recovery and breaks are solved for the
 first `HANDLED` samples only. A sample without equilibrium counts as exceeding every limit.
 """
@@ -206,9 +206,10 @@ def with_cases(in_environments: Sequence[MooringInEnvironment]) -> tuple[Mooring
 def cased(
     findings: Iterable[Finding], in_environments: Sequence[MooringInEnvironment]
 ) -> list[Finding]:
-    """Return all findings, with a load-case code for those about currents or drag coefficients.
+    """Return all findings, after adding load-case codes to some of them.
 
-    The code is that of the mooring as designed in the environment of the finding.
+    Findings about currents or drag coefficients get the code of the unchanged mooring in their
+    environment.
     """
     numbers = _environment_numbers(in_environments)
     return [
@@ -389,8 +390,9 @@ RULES = {each.name: each for each in (*_WHOLE, *STANDING, *IN_WAVES, *ONCE)}
 
 
 HANDLED = 64
-"""Number of samples for which launch and recovery are solved: the first of the sequence, since the
-beginning of a Sobol' sequence is itself a valid sequence.
+"""Number of samples for which launch and recovery are solved.
+
+These are the first samples, because the beginning of a Sobol' sequence is itself a valid sequence.
 """
 
 Key = tuple[str, "Place | None"]

@@ -43,9 +43,7 @@ MISSING = "missing"
 """Name of the rule for missing values of components."""
 
 EXAMPLE = "EXAMPLE"
-"""Placeholder in `accept.by` of the example files; a report that relies on this acceptance is a
-draft.
-"""
+"""Placeholder in `accept.by` of the example files; a report with this placeholder is a draft."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,11 +127,11 @@ class Assessment:
 
     @property
     def file(self) -> MooringFile:
-        """Mooring file as resolved for the first environment; for a net, that of its first leg."""
+        """Mooring file, resolved for the first environment; in a net, the file of the first leg."""
         return self.in_environments[0].leg.file
 
     def all_findings(self) -> Iterator[Finding]:
-        """Yield the findings in all environments, followed by those in `findings`."""
+        """Yield the findings in all environments, and then `findings`."""
         for stand in self.in_environments:
             yield from stand.findings
         yield from self.findings

@@ -63,18 +63,19 @@ bar.
 """
 
 SOFTEST_WIRE = 0.05
-"""Minimum ratio of a wire's stiffness to that of a steel bar of equal diameter; catalogue wires
-have at least 0.17.
+"""Minimum ratio of a wire's stiffness to the stiffness of a steel bar of equal diameter. Wires in
+the catalogue have at least 0.17.
 """
 
 STRONGEST_METAL = 350e3
-"""Maximum strength-to-density ratio of a metal, that of titanium alloys [Pa/(kg/m³)]. Links and
-shackles of the catalogue reach 45e3, computed from their mass and length.
+"""Maximum strength-to-density ratio of a metal [Pa/(kg/m³)], from titanium alloys.
+
+Links and shackles of the catalogue reach 45e3, computed from their mass and length.
 """
 
 HOLLOW = 0.5
-"""Minimum ratio of the density of connecting hardware to that of its material; known hardware has
-0.85.
+"""Minimum ratio of the density of connecting hardware to the density of its material. Known
+hardware has 0.85.
 """
 
 ANCHOR_SPEEDS = 0.3, 15.0

@@ -1,6 +1,4 @@
-"""Rule that checks drag coefficients against their Reynolds range, with the effect of the drag
-curve of a smooth shape.
-"""
+"""Rule `drag-coefficient`: drag coefficients that are used outside their Reynolds range."""
 
 from __future__ import annotations
 

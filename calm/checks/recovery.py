@@ -4,8 +4,8 @@ The release and everything above it rise together at terminal speed until the fi
 reaches the surface. This piece and everything rigidly connected to it stay there. If the line below
 it is buoyant, it continues to rise as a separate line in still water. The part of this line that is
 already suspended from the surface is included, so the computed rise is too slow. Buoyant pieces
-surface one after another. To surface, each one rises by the length of line between the previous one
-and itself. All other pieces are suspended below the surfaced ones.
+surface one after another. Each rises by the length of the line between the previously surfaced
+piece and itself. All other pieces are suspended below the surfaced pieces.
 
 The model neglects acceleration, and treats surfaced floats as fully immersed. It assumes that no
 piece is carried past a piece above it in the line. If the line tangles during ascent
@@ -154,7 +154,7 @@ def recovery_of(leg: Leg, result: LegResult) -> Recovery:
 def lifts_of(line: Line, water: Water, result: LegResult) -> Floats:
     """Return the net forces (n,) of the pieces with their clamps, positive up [N].
 
-    The water density is that at the depths of the pieces in equilibrium.
+    The net forces are computed with the water densities at the equilibrium depths of the pieces.
     """
     rows = slice(len(line.length))
     depth = 0.5 * (result.components.depth_top[rows] + result.components.depth_bottom[rows])

@@ -19,9 +19,7 @@ from calm.files.mooring_file import legs_of
 from calm.quantities import say
 
 WEAK_LINK = 0.5
-"""Ratio of a piece's strength to that of the cables on both sides, below which the piece is a weak
-link.
-"""
+"""Strength ratio of a piece to the cables on both sides, below which the piece is a weak link."""
 
 WEIGHT_OF_A_HINGE = 0.5
 """Weight in water below which a piece without length is not treated as hardware [N]."""
@@ -40,11 +38,11 @@ def allowable_load(component: Component, factors: SafetyFactors, surface: bool) 
 def governing_load(
     component: Component, working_factor: float, factor: float
 ) -> tuple[float | None, str]:
-    """Return the smaller of working load × `working_factor` and breaking load / `factor` [N], and
-    the key of this load rating.
+    """Return the allowable load [N], and the key of the load rating that governs it.
 
-    For a synthetic rope with both load ratings, only the breaking load counts. Return None and ""
-    if the component has no load rating.
+    The allowable load is the smaller of working load × `working_factor` and breaking load /
+    `factor`. For a synthetic rope with both load ratings, only the breaking load counts. Return
+    None and "" if the component has no load rating.
     """
     known, working = [], counted_working_load(component)
     if working is not None:
@@ -394,8 +392,8 @@ def anchor_sliding(leg: Leg) -> Iterator[Criterion]:
 
 
 ANCHOR_RULES = tuple(each.name for each in (anchor_weight, anchor_uplift, anchor_sliding))
-"""Rules that a sufficiently heavy anchor satisfies. The weight required by the first rule satisfies
-all of them in the same situation.
+"""Rules that a sufficiently heavy anchor satisfies. An anchor with the weight required by the first
+rule satisfies all three rules in the same situation.
 """
 
 

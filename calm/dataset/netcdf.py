@@ -38,8 +38,7 @@ _ZEROS = bytes(1 << 20)
 
 
 def netcdf_of(layout: ResultLayout, block: int = 0) -> bytes:
-    """Return the content of a new NetCDF file for a layout, in which time-dependent variables are
-    empty.
+    """Return the content of a new NetCDF file, in which time-dependent variables are empty.
 
     These variables are divided into chunks of `block` times.
     """
@@ -81,7 +80,7 @@ def write_netcdf(
     path: Path,
     last: Callable[[], Attributes] = dict,
 ) -> None:
-    """Write a NetCDF file block by block; it has a temporary name until it is complete.
+    """Write a NetCDF file block by block. An incomplete file has a temporary name.
 
     Parameters
     ----------
@@ -135,8 +134,9 @@ def _take_room(handle: int, size: int) -> None:
 
 
 def chunk_shape(layout: ResultLayout, variable: Variable, block: int) -> tuple[int, ...]:
-    """Return the chunk shape of a time-dependent variable, which also applies to an incomplete last
-    chunk.
+    """Return the chunk shape of a time-dependent variable.
+
+    An incomplete last chunk has this shape, too.
 
     Parameters
     ----------
@@ -244,9 +244,7 @@ class Variable:
 
     @property
     def described(self) -> Attributes:
-        """Attributes; those of a numeric variable include the ACDD attribute
-        `coverage_content_type`.
-        """
+        """Attributes, with the ACDD attribute `coverage_content_type` for a numeric variable."""
         if "units" not in self.attributes and "flag_meanings" not in self.attributes:
             return self.attributes
         content = "modelResult"
@@ -259,8 +257,7 @@ class Variable:
 
 @dataclass(frozen=True)
 class ResultLayout:
-    """Variables, dimensions and attributes of a result; time-dependent variables have no values
-    yet.
+    """Variables, dimensions and attributes of a result, without time-dependent values.
 
     Attributes
     ----------

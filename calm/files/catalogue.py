@@ -220,7 +220,7 @@ def define(
     Parameters
     ----------
     entry : catalogue entry of the definition
-    section : mapping to validate: either that of the entry, or overrides with the entry as base
+    section : mapping to validate: the section of the entry, or overrides based on that section
     also_allowed : keys that may be in the section although they do not belong to the component
     context : `IN_AIR` for a component used in air, otherwise None
     """
@@ -261,7 +261,7 @@ class CatalogueEntry:
 
     @property
     def replaces(self) -> list[str]:
-        """Keys of this entry that override its base, without keys such as `source` and `note`."""
+        """Keys that override the base definition, without keys such as `source` and `note`."""
         base = self.section.base
         given = frozenset[str]() if base is None else self.section.own & base.data.keys()
         return sorted(given - {"source", "sources", "searched", "note", "date"})

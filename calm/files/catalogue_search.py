@@ -146,17 +146,19 @@ class WordIndex:
 
         A limit is a word such as ``breaking>50kN``. Hyphens separate words as blanks do, because
         spellings vary. A size such as ``8mm`` or ``17 in`` also matches an equal size in another
-        unit. Complete components precede outlines. Components that contain the words themselves
-        precede components that match through a synonym or their source. Among equally good matches,
-        the components used most often in the shipped lines come first.
+        unit.
+
+        Components that contain the words themselves precede components that match through a synonym
+        or their source. Within these two groups, complete components precede outlines. Among
+        equally good matches, the components used most often in the shipped lines come first.
 
         Parameters
         ----------
         text : words and limits
         kinds : kinds of components to search; by default all
         first : ids to list first, in this order; only exact matches precede them
-        by : key of the column whose values sort the result, in descending order of magnitude, with
-            unknown values last; by default the best matches come first
+        by : key of the column that sorts the result, largest magnitude first and unknown values
+            last; by default the best matches come first
         """
         plain, limits = _parsed(text)
         terms = _terms(plain)

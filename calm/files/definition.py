@@ -240,7 +240,7 @@ class EstimatedFigure(Model):
 
     @property
     def bounds_text(self) -> str:
-        """The bounds and the best estimate, such as ``at least 7.36 kN, probably 33.18 kN``."""
+        """Text of the bounds and the best estimate: ``at least 7.36 kN, probably 33.18 kN``."""
         name = self.quantity if self.quantity in ("max_tilt", "depth_rating") else "load"
         text, best = f"at least {say(name, self.low)}", self.value
         if self.low_in_waves is not None:
@@ -249,7 +249,7 @@ class EstimatedFigure(Model):
 
     @property
     def in_words(self) -> str:
-        """The bounds, the best estimate, the source and its quality."""
+        """Text of the bounds, the best estimate, the source and its quality."""
         quality = f", quality {self.quality}" if self.quality is not None else ""
         return f"{self.bounds_text} ({self.source}{quality})"
 

@@ -274,7 +274,7 @@ def read_environment(
     notices : list to which remarks are added
     towed : whether the environment is for a tow, which may be in air or have no water depth
     position : position that selects the profile in a current file with several profiles
-    open_files : whether current files are read; if False, the result is None if a file is needed
+    open_files : whether current files are read; if False, an environment with a file gives None
     """
     keys = validate(TowEnvironmentKeys if towed else EnvironmentKeys, section)
     if keys is None:

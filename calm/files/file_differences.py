@@ -65,9 +65,10 @@ class Differences:
 
     Attributes
     ----------
-    changed : changed values: first those outside the line, then those in the line from the top down
-    moved : parts that have moved within the line; each `Change` has the part above the moved part
-        in the first and in the second line
+    changed : changed values: first values outside the line, then values in the line from the top
+        down
+    moved : parts that have moved within the line; the values of each `Change` are texts, such as
+        ``below wire 1``
     removed, added : labels of removed and added pieces and clamps
     pairs : matched pieces and clamps, in the order of the first line
     """

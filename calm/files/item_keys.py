@@ -22,9 +22,9 @@ def listed_serials(given: str | tuple[str, ...] | None) -> tuple[str, ...]:
 class Equipment(definition.Model):
     """Keys that describe the individual equipment at one position in the line.
 
-    In an item or clamp, `serial` is a text, or a list of texts: one for each of the `items` of each
-    piece that `count` produces. After reading, each piece has its own serial numbers, and
-    `planned_depth` may also come from a depth in the label.
+    In an item or clamp, `serial` is one number or a list of numbers. A list contains the numbers of
+    all pieces that `count` produces; a pair of releases has two numbers per piece. After reading,
+    each piece has its own serial numbers, and `planned_depth` may come from a depth in the label.
     """
 
     serial: Text | Annotated[tuple[Text, ...], Field(min_length=1)] | None = optional(

@@ -156,4 +156,4 @@ Strumming = Annotated[
         json_schema_input_type=_Name | StrummingFactor | ConstantCn | BourgetMarichalKeys,
     ),
 ]
-"""Type of the field; None means no strumming."""
+"""Type of the key `strumming:`; None means no strumming."""

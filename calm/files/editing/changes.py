@@ -280,10 +280,9 @@ def lines_of(text: str) -> list[EndedLine]:
 
 
 def retyped(text: str, lines: Sequence[str]) -> str:
-    """Replace the lines of a text with lines from a text editor, which have no line breaks.
+    """Replace the content of a text with `lines` from a text editor; keep the line breaks.
 
-    Unchanged and replaced lines keep the line breaks of the text. An added line gets the usual
-    line break of the text.
+    The `lines` contain no line breaks. An added line gets the usual line break of the text.
     """
     old = lines_of(text)
     usual = WritingStyle.of(text, None).line_break

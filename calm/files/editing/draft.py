@@ -105,7 +105,7 @@ class Draft:
 
     @cached_property
     def lists(self) -> LineLists:
-        """Locations of the lists of line items; line indices run through the items of all legs."""
+        """Locations of the lists of line items. A line index counts the items of all legs."""
         return LineLists.of(self._root.data if self._root is not None else None)
 
     @property
@@ -131,7 +131,7 @@ class Draft:
     def insert(
         self, index: int, values: Mapping[str, Value], rows: Location = LINE, *, above: bool = False
     ) -> Draft:
-        """Insert an item so that it gets a given index; items from that index on move down by one.
+        """Insert an item before the item that has the given index.
 
         Parameters
         ----------
@@ -203,7 +203,7 @@ class Draft:
     def paste(
         self, index: int, snippets: Iterable[str], rows: Location = LINE, *, above: bool = False
     ) -> Draft:
-        """Insert items that `copy` returned; the first of them gets a given index.
+        """Insert the items that `copy` returned.
 
         Parameters
         ----------
@@ -253,7 +253,7 @@ class Draft:
     def put_table(
         self, location: Location, columns: Sequence[str], rows: Sequence[Sequence[str | None]]
     ) -> Draft:
-        """Replace a table of `columns` and `rows`; unchanged rows keep their text.
+        """Replace a table, but keep the text of unchanged rows.
 
         Parameters
         ----------

@@ -27,7 +27,7 @@ _LINE_BREAK = re.compile(r"\r\n|\n")
 class LineLists:
     """Locations of the lists of line items: a single list, or one list per leg of a net.
 
-    Line indices run through the items of all lists, in file order.
+    A line index counts the items of all lists, in file order.
 
     Attributes
     ----------

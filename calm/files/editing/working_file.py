@@ -1,7 +1,7 @@
 """The file that a user is editing, and backup copies of its unsaved text.
 
 The first line of a copy is a comment with the host, the process, and a digest of the file when the
-work began. The text follows below. Each session uses its own file name.
+work began. The text follows below. Each session uses its own file name for the copy.
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ class WorkingFile:
         return text
 
     def save(self, text: str) -> str:
-        """Write the file. Other programs see either the old or the new text, never a part of it.
+        """Write the file. Other programs see the complete old text or the complete new text.
 
         The permissions of the file are kept. A symbolic link still points to the same file.
 
@@ -283,7 +283,7 @@ class Keeper:
     ----------
     host : name of the machine
     process : process number
-    started : start time of the process in units of that machine; empty if unknown
+    started : start time of the process in ticks since boot; empty if unknown
     """
 
     host: str

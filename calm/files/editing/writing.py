@@ -269,7 +269,7 @@ class Patch(NamedTuple):
 
 
 def patched(text: str, patches: Iterable[Patch]) -> str:
-    """Apply patches to a text; patches at the same position keep their given order."""
+    """Apply patches to a text. Patches at the same position are applied in the given order."""
     pieces: list[str] = []
     done = 0
     for patch in sorted(patches, key=lambda one: one[:2]):
@@ -298,7 +298,7 @@ def first_on_line(text: str, place: int) -> bool:
 
 
 def own_end(text: str, place: int, column: int) -> int:
-    """Return the index at which the lines of an item end, including the comments that belong to it.
+    """Return the index at which an item ends, including the comments that belong to the item.
 
     Parameters
     ----------
@@ -316,7 +316,7 @@ def own_end(text: str, place: int, column: int) -> int:
 
 
 def own_start(text: str, place: int, least: int, column: int | None = None) -> int:
-    """Return the index at which the lines of an item begin, including comments that belong to it.
+    """Return the index at which an item begins, including the comments that belong to the item.
 
     Parameters
     ----------
