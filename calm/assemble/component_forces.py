@@ -164,8 +164,9 @@ _PART_KEYS = {"use", "label", "length", "count", "clamps", "at"}
 
 @dataclass(frozen=True)
 class Datasheet:
-    """Derived values of a component in sea water of density `CATALOGUE_DENSITY`, per metre for a
-    cable or chain.
+    """Derived values of a component in sea water of density `CATALOGUE_DENSITY`.
+
+    The values of a cable or chain are per metre.
 
     Attributes
     ----------

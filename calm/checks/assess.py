@@ -206,10 +206,9 @@ def with_cases(in_environments: Sequence[MooringInEnvironment]) -> tuple[Mooring
 def cased(
     findings: Iterable[Finding], in_environments: Sequence[MooringInEnvironment]
 ) -> list[Finding]:
-    """Return all findings, after adding load-case codes to some of them.
+    """Return all findings, with load-case codes for the rules on currents and drag coefficients.
 
-    Findings about currents or drag coefficients get the code of the unchanged mooring in their
-    environment.
+    Findings of these rules get the code of the unchanged mooring in their environment.
     """
     numbers = _environment_numbers(in_environments)
     return [
@@ -287,7 +286,7 @@ def findings_of(
             yield from acceptance.findings(rule, verdicts, mooring, environment, situation.name)
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=16)  # environments may share situations
 def _verdicts_of(situation: Situation) -> list[tuple[Rule, list[Any]]]:
     assert situation.result is not None
     file, result = situation.result.file, _estimated_in(situation)
@@ -370,7 +369,9 @@ _ORDER = list(TEXTS)
 def _collected_rules(*, once: bool) -> tuple[Rule, ...]:
     found = chain.from_iterable(vars(module).values() for module in _MODULES)
     rules = [each for each in found if isinstance(each, Rule) and each.once == once]
+    # these two rules are evaluated separately
     rules = [each for each in rules if each not in (equilibrium, currents)]
+    # the order of the manual, with the rules for a particular situation last
     rules.sort(key=lambda each: (each.situation != AS_GIVEN, _ORDER.index(each.name)))
     return tuple(rules)
 

@@ -208,7 +208,7 @@ class Acceptance:
         return cls(file.accepts, day or date.today(), parts)
 
     def of(self, finding: Finding) -> Finding:
-        """Apply the estimates and acceptances of the file to a finding; return the new finding.
+        """Apply the estimates and acceptances of the file to a finding, and return the new finding.
 
         If a finding relies on an estimate, a pass becomes estimated and a failure becomes unknown.
         A finding that fails or is unknown becomes accepted if the file accepts it. An acceptance of

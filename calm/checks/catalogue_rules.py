@@ -58,9 +58,7 @@ LIGHTEST_FLOAT = 0.01
 """Minimum ratio of a float's weight to its lift; foam has 0.02, inflated buoys have 0.03."""
 
 STEEL_MODULUS = 210e9
-"""Young's modulus of steel [Pa], the upper limit for any cable: none is stiffer than a solid steel
-bar.
-"""
+"""Young's modulus of steel [Pa]; no cable is stiffer than a solid steel bar."""
 
 SOFTEST_WIRE = 0.05
 """Minimum ratio of a wire's stiffness to the stiffness of a steel bar of equal diameter. Wires in

@@ -51,7 +51,7 @@ def pieces_of(leg: Leg) -> list[JudgedPart]:
 
 
 def parts_of(leg: Leg) -> list[JudgedPart]:
-    """Return the pieces above the anchor, followed by all clamps; both from the top down.
+    """Return the pieces above the anchor and then all clamps, each from the top down.
 
     Clamps on the anchor are included.
     """

@@ -27,9 +27,7 @@ _STRONG = re.compile(
     r"|return|sturm|tempête",
     re.IGNORECASE,
 )
-"""Words in the names of environments whose current should exceed that of the ordinary
-environment.
-"""
+"""Words in the names of environments whose current should be stronger than the ordinary current."""
 
 WEAKER = 0.5
 """Ratio to the ordinary current below which the current of a storm is doubtful."""

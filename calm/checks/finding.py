@@ -114,7 +114,7 @@ class Lack:
 
 @dataclass(frozen=True)
 class MissingFigure:
-    """A missing component value, with all rules and pieces that need it.
+    """A missing component value, with all rules and pieces that need the value.
 
     Attributes
     ----------
@@ -228,7 +228,7 @@ def no_capacity(verdict: Verdict) -> bool:
 
 
 def percent_used(utilisation: float) -> float:
-    """Return a utilisation in percent, rounded up to an integer; it may be infinite.
+    """Return a utilisation in percent, rounded up to an integer or infinite.
 
     A utilisation above 1 therefore always exceeds 100 %.
     """

@@ -105,7 +105,7 @@ def situations_of(design: Design) -> tuple[Situations, ...]:
 
 
 def solved(name: str, design: Design) -> Situations:
-    """Solve a design; return one situation with the given name for each of its legs.
+    """Solve a design, and return one situation with the given name for each leg.
 
     Without an equilibrium, the result has a single situation, which contains the reason.
     """

@@ -54,7 +54,7 @@ Defined = Component | Assembly | Outline
 
 @dataclass(frozen=True)
 class Catalogue:
-    """Component definitions in levels; earlier levels take precedence over later levels.
+    """Component definitions in levels, the level with the highest precedence first.
 
     A definition hides all definitions with the same id in later levels.
     """
@@ -330,7 +330,7 @@ class UnreadLevel(Level):
 
 
 def read_level(paths: Iterable[Path], problems: list[Problem]) -> Level:
-    """Read the entries of several catalogue files, by id; add all mistakes to `problems`.
+    """Read the entries of several catalogue files by id. Mistakes are added to `problems`.
 
     An id that is defined twice is a mistake.
     """

@@ -117,7 +117,7 @@ class WordIndex:
         return self._listed.get(id)
 
     def figures(self, id: str) -> Figures:
-        """Return the known values of a component by column key; always empty in this index."""
+        """Return the values of a component by column key; this index contains no values."""
         return {}
 
     def suggested(self, text: str, near: str | None) -> list[str]:
@@ -383,8 +383,10 @@ COLUMNS = (
     CatalogueColumn("drag", "drag N", "force", "N", 1.0, 1),
     CatalogueColumn("mass", "mass kg", "mass", "kg", 1.0, 1),
 )
-"""Columns of the component list: net buoyancy in water, positive up; loads; depth rating; normal
-drag at 1 m/s; mass in air. For a cable or chain all values are per metre, except loads and depth.
+"""Columns of the component list.
+
+Net buoyancy is in water and positive up. Drag is the normal drag at 1 m/s, and mass is in air. For
+a cable or chain, all values except loads and depths are per metre.
 """
 
 

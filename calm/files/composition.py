@@ -106,7 +106,7 @@ def _composed_by_python(text: str, start: int, plain: str) -> Composition:
 
 
 class _Reader:
-    """Converter of YAML events to nodes; collects the rejected parts.
+    """Converter of YAML events to nodes, with a list of the rejected parts.
 
     Parameters
     ----------

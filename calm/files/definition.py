@@ -60,7 +60,7 @@ class QuantityField(QuantityRange):
         return self.json_schema()
 
     def json_schema(self) -> dict[str, Any]:
-        """Return the JSON Schema of the quantity as written in a file; the schema omits limits."""
+        """Return the JSON Schema of the quantity as written in a file, without its limits."""
         kind = DIMENSIONS[self.dimension]
         number = r"^\s*[-+]?[0-9.]+([eE][-+]?[0-9]+)?(\s*[0-9]*/[0-9]+)?"
         if not kind.unit:
@@ -86,7 +86,7 @@ class ColumnHeading(str):
 
 
 def described(description: str, example: object, **default: Any) -> Any:
-    """Declare a key of a model; it is required unless `default` or `default_factory` is set."""
+    """Declare a key of a model, which is required unless `default` or `default_factory` is set."""
     return Field(description=description, examples=[example], **default)
 
 

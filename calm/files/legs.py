@@ -172,7 +172,7 @@ def stand_in_anchor(index: int, item: int) -> Piece:
 def read_legs(
     top: SourceMapping, reader: LineReader, position: Position | None
 ) -> tuple[tuple[FileLeg, ...], tuple[Piece, ...]]:
-    """Read the legs of a file; return the legs, and the pieces of all legs in file order.
+    """Read the legs of a file. Return the legs, and the pieces of all legs in file order.
 
     Parameters
     ----------

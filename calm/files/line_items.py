@@ -73,7 +73,7 @@ class LineReader:
                     self._assembly(entry, section)
 
     def read(self, section: SourceMapping, key: str) -> tuple[Piece, ...]:
-        """Read the list of items under a key; return the pieces that the items produce.
+        """Read the list of items under a key, and return the pieces that the items produce.
 
         Items with mistakes are skipped, and their mistakes are recorded.
         """

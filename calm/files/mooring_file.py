@@ -156,7 +156,7 @@ class MooringFile:
         return math.tan(math.atan(friction) - math.radians(seabed.slope))
 
     def leg_alone(self, leg: FileLeg) -> MooringFile:
-        """Return a copy of the file with a single leg; piece indices start at the leg's upper end.
+        """Return a copy of the file with a single leg, whose first piece has the index 0.
 
         A leg without an anchor gets a substitute anchor with the id `STAND_IN`.
         """

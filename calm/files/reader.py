@@ -346,7 +346,7 @@ class EnvironmentFileKeys(Model):
 def choose_environment(
     top: SourceMapping, chosen: str | Path | None, *, towed: bool
 ) -> tuple[SourceMapping, str | None] | None:
-    """Select an environment; return its section before validation, and its name.
+    """Select an environment, and return its unvalidated section and its name.
 
     A variant or environment file is based on the default environment of the mooring file. The other
     environments in the mooring file are checked here, so that all mistakes are reported. Return
