@@ -20,7 +20,7 @@ from calm.files.yaml_document import Location
 
 DEFAULT_ENVIRONMENT = "environment"
 VARIANTS = "environments"
-"""Sections that are kept even if they are empty."""
+"""Section of the named environments, each of which is kept even if it is empty."""
 
 _CONTROL = "a control character cannot be written into the file"
 _LAYOUT_PREVENTS = "the layout of the file does not allow this change; make it in the text"
