@@ -1,4 +1,4 @@
-"""Conversion of the pieces and environment in a mooring file to the arrays of the march."""
+"""Conversion of the pieces and environment in a mooring file to the arrays of the solver."""
 
 from collections import deque
 from collections.abc import Callable, Sequence
@@ -29,7 +29,7 @@ TOWED_SPHERE_CX = 0.90
 """
 
 DEEPEST = 11_000.0
-"""Default water depth of a tow [m], larger than that of the deepest trench."""
+"""Default water depth of a tow [m], larger than the depth of any trench."""
 
 LINEAR_WITHIN = 1e-5
 """Allowed relative error of linear interpolation of the sea water density between levels."""
@@ -109,9 +109,6 @@ def _assembled(pieces: Sequence[files.Piece], solver: Solver, gravity: float) ->
 
 
 def _drag_curve(component: files.Component, solver: Solver) -> DragCurve | None:
-    """Return the drag curve of a smooth sphere or cylinder; None if the component specifies a drag
-    coefficient.
-    """
     if solver.drag == "constant":
         return None
     if not isinstance(component, files.Sphere | files.Cylinder) or component.surface != "smooth":
@@ -174,7 +171,7 @@ def assemble_floating(
     if hull is None and component.k_surface is None:
         return None
     density = water.density_at(np.zeros(()))
-    volume = _volume(component) or 0.0
+    volume = _hull_volume(component) or 0.0
     net = net_buoyancy(component, water.gravity)
     lift = net + (float(density) - CATALOGUE_DENSITY) * water.gravity * volume
     below, *_ = drag_of(component)
@@ -191,17 +188,15 @@ def assemble_floating(
     )
 
 
-def _volume(component: RigidComponent) -> float | None:
-    """Return the displaced volume of the whole hull [m³], or else the last row of its displacement
-    table.
-    """
+def _hull_volume(component: RigidComponent) -> float | None:
+    """Return the displaced volume of the hull [m³], or else the last volume in its table."""
     if component.displaced_volume is None and isinstance(component.hull, Displacement):
         return component.hull.displacement[-1][1]
     return component.displaced_volume
 
 
 def _hull(component: RigidComponent) -> Hull | None:
-    volume, hull = _volume(component), component.hull
+    volume, hull = _hull_volume(component), component.hull
     if not volume:
         return None
     if isinstance(hull, Displacement):
@@ -219,8 +214,10 @@ def _hull(component: RigidComponent) -> Hull | None:
 
 
 def assemble_water(environment: Environment) -> Water:
-    """Build the water column. The levels of the current and density profiles are merged; viscosity
-    has its own levels. All values are linear between levels.
+    """Build the water column.
+
+    The levels of the current and density profiles are merged. Viscosity has its own levels. All
+    values are linear between levels.
     """
     flows = [environment.current, *_surface_drift(environment)]
     density_levels, density = _density(environment)
@@ -249,9 +246,10 @@ def assemble_water(environment: Environment) -> Water:
 
 
 def _viscosity(environment: Environment, levels: Floats, density: Floats) -> tuple[Floats, Floats]:
-    """Return depths [m] and kinematic viscosities [m²/s], at the levels of the density.
+    """Return depths [m], and kinematic viscosities at these depths [m²/s].
 
-    Without temperature and salinity, the viscosity is that of sea water of 10 °C and salinity 35.
+    Without temperature and salinity, the viscosity is constant: that of sea water of 10 °C and
+    salinity 35, or of air.
     """
     sea = environment.density
     if not isinstance(sea, SeaWater):
@@ -273,9 +271,6 @@ def _gravity(environment: Environment) -> float:
 
 
 def _surface_drift(environment: Environment) -> list[files.CurrentTable]:
-    """Return the wind-driven surface drift that is added to the current; an empty list if there is
-    none.
-    """
     wind = environment.wind
     if wind is None or wind.surface_drift == 0.0:
         return []
@@ -285,7 +280,7 @@ def _surface_drift(environment: Environment) -> list[files.CurrentTable]:
 
 
 def _density(environment: Environment) -> tuple[Floats, Floats]:
-    """Return levels [m] and densities at these levels [kg/m³]."""
+    """Return depths [m], and densities at these depths [kg/m³]."""
     given = environment.density
     if isinstance(given, DepthTable):
         return np.array(given.depth), np.array(given.value)
@@ -305,7 +300,7 @@ def _density(environment: Environment) -> tuple[Floats, Floats]:
 
 
 def _probed(sea: SeaWater, depth: Floats) -> tuple[Floats, Floats]:
-    """Return temperature [°C] and practical salinity at depths of any shape [m]."""
+    """Return temperature [°C] and practical salinity at depths [m] of any shape."""
     temperature, salinity = sea.temperature, sea.salinity
     return (
         np.interp(depth, temperature.depth, temperature.value),
@@ -314,8 +309,9 @@ def _probed(sea: SeaWater, depth: Floats) -> tuple[Floats, Floats]:
 
 
 def _refined(levels: Floats, values: Callable[[Floats], Floats]) -> Floats:
-    """Bisect levels until `values` is linear between them. The given levels are kept, because
-    `values` may have kinks there.
+    """Bisect levels until `values` is linear between them.
+
+    The given levels are kept, because `values` may have kinks there.
     """
     while True:
         thickness = np.diff(levels)[:, np.newaxis]

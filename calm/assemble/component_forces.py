@@ -28,12 +28,11 @@ def net_buoyancy(component: files.Component, gravity: float) -> float:
 
 
 def mass_in_air(component: files.Component) -> float | None:
-    """Return the specified mass in air, or compute it from the weight in water [kg; kg/m for a
-    cable or chain].
+    """Return the mass in air [kg; kg/m for a cable or chain].
 
-    The conversion uses the displaced volume or, if that is unknown, the density of the material.
-    The default material of a chain or an anchor is steel. Return None if both the volume and the
-    density are unknown.
+    An unspecified mass is computed from the weight in water and the displaced volume. If the volume
+    is unknown, the density of the material is used. The default material of a chain or an anchor is
+    steel. Return None if both the volume and the density are unknown.
     """
     if component.mass is not None:
         return component.mass
@@ -52,8 +51,9 @@ def mass_in_air(component: files.Component) -> float | None:
 
 
 def drag_of(component: files.Component, solver: Solver | None = None) -> tuple[float, float, bool]:
-    """Return the drags Kn and Kt [N/(m/s)²; per metre for a cable or chain], and whether the drag
-    depends on the inclination of the axis to the flow.
+    """Return the drags Kn and Kt [N/(m/s)²; per metre for a cable or chain], and a flag.
+
+    The flag is true if the drag depends on the inclination of the axis to the flow.
 
     Parameters
     ----------
@@ -114,9 +114,11 @@ def cable_drag(component: FlexibleComponent, solver: Solver) -> tuple[float, flo
     """Return the drags Kn and Kt per metre of cable or chain [N/(m/s)²].
 
     A cable's Kn includes strumming. With Bourget & Marichal's law, however, Kn excludes strumming,
-    because the march computes the effect of strumming. Pode's constant friction is Kt = Ct ½ρ Cn D.
-    If a cable or chain has no Ct, Pode's law uses the default Ct π/Cn (0.012, 0.022 or 0.031,
-    depending on the finish), so that the friction is the same as in the quadratic law.
+    because the solver computes the effect of strumming.
+
+    Pode's constant friction is Kt = Ct ½ρ Cn D. If a cable or chain has no Ct, Pode's law uses the
+    default Ct π/Cn (0.012, 0.022 or 0.031, depending on the finish), so that the friction is the
+    same as in the quadratic law.
     """
     if isinstance(component, Cable):
         usual = drag.CABLE_CN, drag.CABLE_CT[component.finish or "smooth"]
@@ -150,7 +152,7 @@ def _strumming_cn(cable: Cable, cn: float, solver: Solver) -> float:
 
 
 def _mass(cable: Cable) -> float:
-    """Return the mass per metre [kg/m], if necessary from the weight in water and the diameter."""
+    """Return the mass per metre [kg/m], if necessary from weight in water and diameter."""
     if cable.mass is not None:
         return cable.mass
     displaced = CATALOGUE_DENSITY * pi * cable.diameter**2 / 4
@@ -162,8 +164,9 @@ _PART_KEYS = {"use", "label", "length", "count", "clamps", "at"}
 
 @dataclass(frozen=True)
 class Datasheet:
-    """Derived values of a component in sea water of density `CATALOGUE_DENSITY`, per metre for a
-    cable or chain.
+    """Derived values of a component in sea water of density `CATALOGUE_DENSITY`.
+
+    The values of a cable or chain are per metre.
 
     Attributes
     ----------
@@ -186,7 +189,7 @@ def datasheet(definition: Defined, catalogue: files.Catalogue | None = None) -> 
     its parts, and if no part overrides values of its component. Otherwise return None.
     """
     if isinstance(definition, files.Component):
-        return _of_component(definition, 1.0)
+        return _component_datasheet(definition, 1.0)
     if catalogue is None or isinstance(definition, Outline):
         return None
     sheets = []
@@ -198,7 +201,7 @@ def datasheet(definition: Defined, catalogue: files.Catalogue | None = None) -> 
             metres = parse_quantity(item["length"], "length") if "length" in item else 1.0
         except QuantityError:
             return None
-        sheets.append(_of_component(component, metres))
+        sheets.append(_component_datasheet(component, metres))
     names = [each.name for each in fields(Datasheet)]
     return Datasheet(*(sum(getattr(sheet, name) or 0.0 for sheet in sheets) for name in names))
 
@@ -212,15 +215,13 @@ def _items(parts: tuple[dict[str, Any], ...]) -> Iterator[Mapping[str, Any]]:
 
 
 def _component(catalogue: files.Catalogue, item: Mapping[str, Any]) -> files.Component | None:
-    """Return the component that an item uses without changes, or None."""
     if not item.keys() <= _PART_KEYS or catalogue.entry(str(item.get("use"))) is None:
         return None
     found = catalogue.get(str(item["use"]))
     return found if isinstance(found, files.Component) else None
 
 
-def _of_component(component: files.Component, metres: float) -> Datasheet:
-    """Return the derived values of a rigid piece, or of a length of cable or chain [m]."""
+def _component_datasheet(component: files.Component, metres: float) -> Datasheet:
     if isinstance(component, Anchor):
         return Datasheet(component.net_buoyancy, None, component.kt, None)
     kn, kt, along = drag_of(component)

@@ -1,3 +1,4 @@
-"""Rules of the design check for catalogues and solved lines; each rule is a small function with its
-source.
+"""Rules of the design check for catalogues and solved lines.
+
+Each rule is a small function with its source.
 """

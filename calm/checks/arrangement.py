@@ -173,8 +173,9 @@ def _bears_torque(component: Component) -> bool:
 
 
 def _held_by(pieces_there: Sequence[Piece]) -> tuple[Piece, bool] | None:
-    """Find the next float beyond one end of a wire, and whether a swivel lies between them; None
-    without a float.
+    """Find the first float beyond one end of a wire; None if a cable or chain comes first.
+
+    The flag is true if a swivel lies between the wire and the float.
     """
     has_swivel = False
     for piece in pieces_there:
@@ -384,9 +385,6 @@ def _lasting(travels: Sequence[ProfilerTravel], part: Clamp) -> Iterator[Verdict
 
 
 def _path_obstacles(part: Clamp, wire: Piece) -> Iterator[Verdict]:
-    """Yield reasons why a profiler cannot travel: clamps on its path, or a wire of unsuitable
-    diameter.
-    """
     upper, lower = part.travel or (0.0, 0.0)
     for other in wire.clamps:
         if upper < other.at < lower and other is not part:

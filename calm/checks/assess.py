@@ -3,8 +3,8 @@
 Each mooring is checked in each of its environments, and then for launch, recovery and breaks.
 
 If the inputs of the design have an `uncertainty`, each finding with a limit gets the probability
-that the limit is exceeded. To estimate it, random samples of the mooring are solved in the
-situation of the finding, and those that exceed the limit are counted. Solving a launch or an
+that the limit is exceeded. For this estimate, random samples of the mooring are solved in the
+situation of the finding, and the samples that exceed the limit are counted. Solving a launch or an
 ascent takes as long as solving many equilibria, so launch, recovery and breaks are solved for the
 first `HANDLED` samples only. A sample without equilibrium counts as exceeding every limit.
 """
@@ -107,8 +107,9 @@ def checked_environment(
 
 
 def _tighter(listed: Iterable[Finding], others: Iterable[Finding]) -> Iterator[Finding]:
-    """For each rule and part, yield the governing finding of `others` if its utilisation is larger
-    than in `listed`.
+    """For each rule and part, yield the governing finding of `others` if it exceeds `listed`.
+
+    Findings are compared by their utilisation.
     """
     known: dict[tuple[str, Place | None], float] = {}
     for one in listed:
@@ -175,7 +176,7 @@ def with_cases(in_environments: Sequence[MooringInEnvironment]) -> tuple[Mooring
     Remedies for an anchor that is too light are changed to name the largest weight that any finding
     requires.
     """
-    numbers = _numbers(in_environments)
+    numbers = _environment_numbers(in_environments)
     every = (one for stand in in_environments for one in (*stand.findings, *stand.tighter))
     weights = strength.heaviest(every)
 
@@ -205,11 +206,11 @@ def with_cases(in_environments: Sequence[MooringInEnvironment]) -> tuple[Mooring
 def cased(
     findings: Iterable[Finding], in_environments: Sequence[MooringInEnvironment]
 ) -> list[Finding]:
-    """Return all findings, with a load-case code for those about currents or drag coefficients.
+    """Return all findings, with load-case codes for the rules on currents and drag coefficients.
 
-    The code is that of the mooring as designed in the environment of the finding.
+    Findings of these rules get the code of the unchanged mooring in their environment.
     """
-    numbers = _numbers(in_environments)
+    numbers = _environment_numbers(in_environments)
     return [
         one.but(case=situations.case_of(numbers[one.environment], AS_GIVEN))
         if one.rule in (currents.name, drag_coefficient.name)
@@ -218,9 +219,10 @@ def cased(
     ]
 
 
-def _numbers(in_environments: Sequence[MooringInEnvironment]) -> dict[str, int]:
-    """Number the environments in order. Keys are the names of the environments, and the names used
-    in `in_environments`.
+def _environment_numbers(in_environments: Sequence[MooringInEnvironment]) -> dict[str, int]:
+    """Number the environments in order.
+
+    The keys are the names of the environments, and the names used in `in_environments`.
     """
     numbers: dict[str, int] = {}
     for stand in in_environments:
@@ -284,13 +286,10 @@ def findings_of(
             yield from acceptance.findings(rule, verdicts, mooring, environment, situation.name)
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=16)  # environments may share situations
 def _verdicts_of(situation: Situation) -> list[tuple[Rule, list[Any]]]:
-    """Evaluate each rule in a situation. The verdicts are cached because environments may share
-    situations.
-    """
     assert situation.result is not None
-    file, result = situation.result.file, _judged(situation)
+    file, result = situation.result.file, _estimated_in(situation)
     end, anchored = file.pieces[-1].place, file.pieces[-1].use != STAND_IN
     return [
         (rule, [one for one in rule.judge(result) if anchored or one.place != end])
@@ -300,8 +299,7 @@ def _verdicts_of(situation: Situation) -> list[tuple[Rule, list[Any]]]:
 
 
 @lru_cache(maxsize=16)
-def _judged(situation: Situation) -> LegResult:
-    """Return the result of a situation with the lower bounds of estimates."""
+def _estimated_in(situation: Situation) -> LegResult:
     assert situation.result is not None
     return estimated_result(situation.result)
 
@@ -322,7 +320,7 @@ def _findings_in_waves(
     if given.result is None:
         return
     acceptance = Acceptance.of_file(given.result.file, day)
-    evidence = MooringInWaves.of(_judged(given).leg)
+    evidence = MooringInWaves.of(_estimated_in(given).leg)
     for each in IN_WAVES:
         yield from acceptance.findings(each, each.judge(evidence), mooring, environment)
 
@@ -343,7 +341,6 @@ def handled(leg: Leg, result: LegResult) -> Handling:
 
 
 def _handled(stand: MooringInEnvironment) -> Handling:
-    """Solve launch, recovery and breaks of a mooring, or record why it has no equilibrium."""
     leg, result = stand.leg, stand.result
     if result is not None:
         return replace(handled(leg, result), leg=estimated(leg))
@@ -369,23 +366,20 @@ _MODULES = (
 _ORDER = list(TEXTS)
 
 
-def _judging(*, once: bool) -> tuple[Rule, ...]:
-    """Collect the rules of the modules in the order of the manual. Rules for a particular situation
-    come last.
-
-    The rules `equilibrium` and `currents` are excluded because they are evaluated separately.
-    """
+def _collected_rules(*, once: bool) -> tuple[Rule, ...]:
     found = chain.from_iterable(vars(module).values() for module in _MODULES)
     rules = [each for each in found if isinstance(each, Rule) and each.once == once]
+    # these two rules are evaluated separately
     rules = [each for each in rules if each not in (equilibrium, currents)]
+    # the order of the manual, with the rules for a particular situation last
     rules.sort(key=lambda each: (each.situation != AS_GIVEN, _ORDER.index(each.name)))
     return tuple(rules)
 
 
-STANDING = _judging(once=False)
+STANDING = _collected_rules(once=False)
 """Rules evaluated for a `LegResult`, in every environment and situation."""
 
-ONCE = _judging(once=True)
+ONCE = _collected_rules(once=True)
 """Rules evaluated once per mooring: breaks, launch and recovery."""
 
 _WAVE_RULES = {each.name for each in IN_WAVES}
@@ -397,8 +391,9 @@ RULES = {each.name: each for each in (*_WHOLE, *STANDING, *IN_WAVES, *ONCE)}
 
 
 HANDLED = 64
-"""Number of samples for which launch and recovery are solved: the first of the sequence, since the
-beginning of a Sobol' sequence is itself a valid sequence.
+"""Number of samples for which launch and recovery are solved.
+
+These are the first samples, because the beginning of a Sobol' sequence is itself a valid sequence.
 """
 
 Key = tuple[str, "Place | None"]
@@ -422,38 +417,38 @@ def with_probabilities(
     normals = normals_of(checked_samples(samples), seed)
     expect_many(samples * len(assessment.in_environments), CompiledPart.NEARBY)
     draws = draws_of(assessment.file.uncertainty, normals)
-    in_environments = tuple(_stand(stand, draws, mapped) for stand in assessment.in_environments)
+    in_environments = tuple(
+        _environment_with_probabilities(stand, draws, mapped)
+        for stand in assessment.in_environments
+    )
     first = next((stand for stand in assessment.in_environments if stand.result is not None), None)
     findings = assessment.findings
     if first is not None:
-        broken = _broken(first.leg, draws[:HANDLED], mapped, standing=False)
-        findings = _probable(findings, broken, min(samples, HANDLED))
+        broken = _exceeding_samples(first.leg, draws[:HANDLED], mapped, standing=False)
+        findings = _findings_with_probabilities(findings, broken, min(samples, HANDLED))
     return replace(
         assessment, in_environments=in_environments, findings=findings, draws=(samples, seed)
     )
 
 
-def _stand(
+def _environment_with_probabilities(
     stand: MooringInEnvironment, draws: Sequence[Draw], mapped: Mapped
 ) -> MooringInEnvironment:
-    """Add probabilities to the findings in one environment, for every situation that has
-    findings.
-    """
     found = [stand.findings, stand.tighter, stand.accepted]
     wanted = {finding.situation for each in found for finding in each}
     for situation in stand.situations:
         if situation.result is not None and situation.name in wanted:
-            broken = _broken(situation.result.leg, draws, mapped)
-            found = [_probable(each, broken, len(draws), situation.name) for each in found]
+            broken = _exceeding_samples(situation.result.leg, draws, mapped)
+            found = [
+                _findings_with_probabilities(each, broken, len(draws), situation.name)
+                for each in found
+            ]
     return replace(stand, findings=found[0], tighter=found[1], accepted=found[2])
 
 
-def _probable(
+def _findings_with_probabilities(
     findings: tuple[Finding, ...], broken: Counter[Key], samples: int, situation: str | None = None
 ) -> tuple[Finding, ...]:
-    """Add the probability that the limit is exceeded to all findings with a limit, in one situation
-    or in all.
-    """
     return tuple(
         one.but(probability=(broken[one.rule, one.place] + broken[_ALL]) / samples)
         if one.limit is not None and situation in (None, one.situation)
@@ -466,11 +461,12 @@ _ALL: Key = ("", None)
 """Key under which samples without equilibrium are counted."""
 
 
-def _broken(
+def _exceeding_samples(
     leg: Leg, draws: Sequence[Draw], mapped: Mapped, *, standing: bool = True
 ) -> Counter[Key]:
-    """Count the samples that exceed each limit, in equilibrium or, if not `standing`, during
-    launch, recovery and breaks.
+    """Count the samples that exceed each limit: in equilibrium if `standing`, else during handling.
+
+    Handling is launch, recovery and breaks.
     """
     block = BLOCK if standing else BLOCK // 16
     blocks = [draws[first : first + block] for first in range(0, len(draws), block)]
@@ -489,14 +485,13 @@ def _counted(standing: bool, leg: Leg, draws: Sequence[Draw]) -> Counter[Key]:
             broken[_ALL] += 1
         else:
             if standing:
-                broken.update(_beyond(STANDING, result))
+                broken.update(_exceeded_limits(STANDING, result))
             else:
-                broken.update(_beyond(ONCE, handled(one, result)))
+                broken.update(_exceeded_limits(ONCE, handled(one, result)))
     return broken
 
 
-def _beyond(rules: Sequence[Rule], evidence: object) -> set[Key]:
-    """Return the rule and the part for every exceeded limit."""
+def _exceeded_limits(rules: Sequence[Rule], evidence: object) -> set[Key]:
     return {
         (rule.name, verdict.place)
         for rule in rules

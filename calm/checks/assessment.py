@@ -43,9 +43,7 @@ MISSING = "missing"
 """Name of the rule for missing values of components."""
 
 EXAMPLE = "EXAMPLE"
-"""Placeholder in `accept.by` of the example files; a report that relies on this acceptance is a
-draft.
-"""
+"""Placeholder in `accept.by` of the example files; a report with this placeholder is a draft."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,11 +127,11 @@ class Assessment:
 
     @property
     def file(self) -> MooringFile:
-        """Mooring file as resolved for the first environment; for a net, that of its first leg."""
+        """Mooring file, resolved for the first environment; in a net, the file of the first leg."""
         return self.in_environments[0].leg.file
 
     def all_findings(self) -> Iterator[Finding]:
-        """Yield the findings in all environments, followed by those in `findings`."""
+        """Yield the findings in all environments, and then `findings`."""
         for stand in self.in_environments:
             yield from stand.findings
         yield from self.findings
@@ -210,7 +208,7 @@ class Acceptance:
         return cls(file.accepts, day or date.today(), parts)
 
     def of(self, finding: Finding) -> Finding:
-        """Apply the estimates and acceptances of the file to a finding; return the new finding.
+        """Apply the estimates and acceptances of the file to a finding, and return the new finding.
 
         If a finding relies on an estimate, a pass becomes estimated and a failure becomes unknown.
         A finding that fails or is unknown becomes accepted if the file accepts it. An acceptance of
@@ -238,8 +236,10 @@ class Acceptance:
         return (self.of(rule.find(one, mooring, environment, situation)) for one in verdicts)
 
     def _estimated(self, finding: Finding) -> Finding:
-        """Change a pass that relies on a lower bound to estimated, and a failure that relies on it
-        to unknown. A failure by a specified value remains a failure.
+        """Change the state of a finding that relies on the lower bound of an estimate.
+
+        A pass becomes estimated, and a failure becomes unknown. A failure by a specified value
+        remains a failure.
         """
         part, figures = self.parts.get(finding.component or ""), RULES[finding.rule].figures
         if part is None or not figures or finding.state not in (State.PASS, State.FAIL):
@@ -285,7 +285,7 @@ class Acceptance:
 def _accepted(finding: Finding, accept: Accept) -> Finding:
     """Mark a finding as accepted, unless the tension exceeds the accepted load.
 
-    The accepted load becomes the limit of a finding without limit.
+    If the finding has no limit, the accepted load becomes the limit.
     """
     accepted = finding.but(state=State.ACCEPTED, accept=accept, unaccepted=finding.state)
     load, tension = accept.load, finding.value

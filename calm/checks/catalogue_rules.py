@@ -58,23 +58,22 @@ LIGHTEST_FLOAT = 0.01
 """Minimum ratio of a float's weight to its lift; foam has 0.02, inflated buoys have 0.03."""
 
 STEEL_MODULUS = 210e9
-"""Young's modulus of steel [Pa], the upper limit for any cable: none is stiffer than a solid steel
-bar.
-"""
+"""Young's modulus of steel [Pa]; no cable is stiffer than a solid steel bar."""
 
 SOFTEST_WIRE = 0.05
-"""Minimum ratio of a wire's stiffness to that of a steel bar of equal diameter; catalogue wires
-have at least 0.17.
+"""Minimum ratio of a wire's stiffness to the stiffness of a steel bar of equal diameter. Wires in
+the catalogue have at least 0.17.
 """
 
 STRONGEST_METAL = 350e3
-"""Maximum strength-to-density ratio of a metal, that of titanium alloys [Pa/(kg/m³)]. Links and
-shackles of the catalogue reach 45e3, computed from their mass and length.
+"""Maximum strength-to-density ratio of a metal [Pa/(kg/m³)], from titanium alloys.
+
+Links and shackles of the catalogue reach 45e3, computed from their mass and length.
 """
 
 HOLLOW = 0.5
-"""Minimum ratio of the density of connecting hardware to that of its material; known hardware has
-0.85.
+"""Minimum ratio of the density of connecting hardware to the density of its material. Known
+hardware has 0.85.
 """
 
 ANCHOR_SPEEDS = 0.3, 15.0
@@ -114,7 +113,7 @@ def check_catalogue(
             messages = _unknown_parts(definition, known)
         else:
             messages = chain(
-                _sources(definition),
+                _source_faults(definition),
                 impossible(definition) if isinstance(definition, Component) else (),
                 _late_warning(definition),
                 doubtful_figures(definition),
@@ -137,12 +136,7 @@ def check_catalogue(
     return findings
 
 
-def _sources(component: Component | Outline) -> Iterator[str]:
-    """Yield faults of the sources of a component.
-
-    These are a missing source, a source for an absent value, and a value that `searched` lists as
-    unpublished.
-    """
+def _source_faults(component: Component | Outline) -> Iterator[str]:
     known = KINDS[component.kind].model_fields
     given = {name for name in known if getattr(component, name, None) is not None}
     if not component.source:
@@ -175,7 +169,7 @@ def impossible(component: Component) -> Iterator[str]:
     if rating is not None and rating > DEEPEST_WATER:
         yield f"has a depth rating of {rating:.5g} m; the deepest sea is {DEEPEST_WATER:g} m deep"
     if isinstance(component, Cable):
-        yield from _of_a_rope(component)
+        yield from _rope_faults(component)
     elif isinstance(component, Chain) and component.density is None:
         steel = (STEEL_DENSITY - CATALOGUE_DENSITY) * STANDARD_GRAVITY
         bars = -component.net_buoyancy / (steel * rope_section(component))
@@ -184,7 +178,7 @@ def impossible(component: Component) -> Iterator[str]:
                 f"weighs as much as {bars:.2g} steel bars of its diameter; a steel chain weighs "
                 "as much as 2 to 5 such bars"
             )
-    elif (envelope := _envelope(component)) is not None:
+    elif (envelope := _outline_volume(component)) is not None:
         lift = CATALOGUE_DENSITY * STANDARD_GRAVITY * envelope
         if component.net_buoyancy > lift:
             has = f"has a buoyancy of {say('load', net)}"
@@ -194,7 +188,7 @@ def impossible(component: Component) -> Iterator[str]:
                 f"has a buoyancy of {say('load', net)}; a float of this diameter, "
                 f"{component.diameter:g} m, has at least {say('load', LEAST_LIFT * lift)}"
             )
-        elif mass is not None and _displaced(component, mass) > ROUNDING * lift:
+        elif mass is not None and _displaced_weight(component, mass) > ROUNDING * lift:
             yield (
                 f"has a mass of {mass:.4g} kg and a net buoyancy of {say('load', net)}: together "
                 f"they exceed the weight of the same volume of water, {say('load', lift)}"
@@ -230,17 +224,16 @@ def _of_a_load(component: Component) -> Iterator[str]:
     yield from load_out_of_bounds(component, most, size)
 
 
-def _displaced(component: Component, mass: float) -> float:
-    """Return the weight of the displaced water from net force and mass [N or N/m]."""
+def _displaced_weight(component: Component, mass: float) -> float:
+    """Weight of the displaced water from net force and mass [N; N/m for a cable or chain]."""
     return component.net_buoyancy + mass * STANDARD_GRAVITY
 
 
-def _of_a_rope(rope: Cable) -> Iterator[str]:
-    """Yield values that make a rope too heavy, too stiff, too strong or too buoyant for its
-    cross-section.
+def _rope_faults(rope: Cable) -> Iterator[str]:
+    """Yield values that make a rope too heavy, too stiff, too strong or too buoyant for its size.
 
-    The weight of the rope is compared with that of a solid bar. The density of the bar is the
-    specified `density`, or else that of the `material`, or else that of steel.
+    The weight of the rope is compared with a solid bar. The density of the bar is the specified
+    `density`, or else the density of the `material`, or else the density of steel.
     """
     section = rope_section(rope)
     density = rope.density or materials.density_of(rope.material) or STEEL_DENSITY
@@ -257,7 +250,7 @@ def _of_a_rope(rope: Cable) -> Iterator[str]:
     if net > lift:
         yield f"has a buoyancy of {net:.4g} N/m; water of the same diameter weighs {lift:.4g} N/m"
     elif rope.mass is not None and not (
-        LOOSEST * lift <= _displaced(rope, rope.mass) <= NOMINAL * lift
+        LOOSEST * lift <= _displaced_weight(rope, rope.mass) <= NOMINAL * lift
     ):
         yield (
             f"weighs {rope.mass * STANDARD_GRAVITY:.4g} N/m in air and {-net:.4g} N/m in water; "
@@ -290,12 +283,9 @@ SMALL_BODY = 1e-3
 
 
 def _drags_out_of_range(component: Component) -> Iterator[str]:
-    """Yield drag coefficients outside the range for the kind of component, and a drag that is too
-    small for the volume of a body.
-    """
     mass = mass_in_air(component)
     if isinstance(component, Shaped) and mass is not None:
-        volume = _displaced(component, mass) / (CATALOGUE_DENSITY * STANDARD_GRAVITY)
+        volume = _displaced_weight(component, mass) / (CATALOGUE_DENSITY * STANDARD_GRAVITY)
         area = drag_of(component)[0] / (0.5 * REFERENCE_DENSITY)
         if volume > SMALL_BODY and area < (least := LEAST_BODY_DRAG * volume ** (2 / 3)):
             yield (
@@ -323,8 +313,7 @@ def _unknown_parts(assembly: Assembly, known: Collection[str]) -> Iterator[str]:
             yield f"has the part `{part.get('use')}`, which is in no catalogue"
 
 
-def _envelope(component: Component) -> float | None:
-    """Return the volume within the outline of a sphere or cylinder [m³]; None for other kinds."""
+def _outline_volume(component: Component) -> float | None:
     if isinstance(component, Sphere):
         return pi / 6 * component.diameter**3
     if isinstance(component, Cylinder):

@@ -140,7 +140,6 @@ def _figures_of(design: _Solved) -> _Figures:
 
 
 def _figures_of_leg(result: LegResult) -> _Figures:
-    """Collect the end positions and end tensions of a single line."""
     point, body = result.tow_point, result.body
     if point is not None and body is not None:
         return {
@@ -169,7 +168,6 @@ def _figures_of_leg(result: LegResult) -> _Figures:
 
 
 def _figures_of_legs(result: Result) -> _Figures:
-    """Collect the positions of nodes and free ends, and the anchor loads of a net."""
     found: _Figures = {}
     for node in result.nodes:
         found[f"{node.name}.depth"] = (f"depth of node {node.name}", "depth", node.depth)
@@ -207,9 +205,6 @@ def _parts(found: Differences, designs: tuple[_Solved, _Solved]) -> Iterator[Com
 
 
 def _margins(designs: tuple[_Solved, _Solved]) -> Iterator[Compared]:
-    """Compare the governing utilisation of each rule, or the margin of a rule without
-    utilisation.
-    """
     judged = [assessment for _, assessment in designs if assessment is not None]
     if len(judged) < 2:
         return

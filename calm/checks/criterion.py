@@ -51,7 +51,7 @@ def pieces_of(leg: Leg) -> list[JudgedPart]:
 
 
 def parts_of(leg: Leg) -> list[JudgedPart]:
-    """Return the pieces above the anchor, followed by all clamps; both from the top down.
+    """Return the pieces above the anchor and then all clamps, each from the top down.
 
     Clamps on the anchor are included.
     """
@@ -150,8 +150,7 @@ def _tilt(result: LegResult, part: JudgedPart) -> float:
     return float(rows.tilt[part.index if part.clamp is None else part.clamp])
 
 
-def _depth(result: LegResult, part: JudgedPart) -> float:
-    """Return the maximum depth of a part; NaN for a piece at the surface."""
+def _max_depth(result: LegResult, part: JudgedPart) -> float:
     if part.clamp is not None:
         return float(result.clamps.depth[part.clamp])
     top, bottom = (
@@ -162,9 +161,7 @@ def _depth(result: LegResult, part: JudgedPart) -> float:
 
 
 def _offset(result: LegResult) -> float:
-    """Return the horizontal distance of the top from the anchor, whose position in a net may differ
-    from the origin.
-    """
+    # in a net, the anchor may not be at the origin
     anchor = result.components[-1]
     return hypot(result.top.x - anchor.x_top, result.top.y - anchor.y_top)
 
@@ -174,7 +171,7 @@ READINGS: dict[str, Callable[[LegResult, JudgedPart], float]] = {
     "tension_bottom": lambda result, part: float(result.components.tension_bottom[part.index]),
     "least_tension": lambda result, part: float(result.components.least_tension[part.index]),
     "tilt": _tilt,
-    "depth": _depth,
+    "depth": _max_depth,
     "top_depth": lambda result, _: result.top.depth,
     "knockdown": lambda result, _: nan if result.top.knockdown is None else result.top.knockdown,
     "offset": lambda result, _: _offset(result),
@@ -207,11 +204,10 @@ def limits_used(file: MooringFile, surface: bool) -> tuple[LimitKey, ...]:
         for key in _keys(file.checks, file.anchor.friction)
         if key.value is not None and (key.name != "minimum_top_depth" or given or not surface)
     )
-    return (*used, *file.looser, *_flattering(file))
+    return (*used, *file.looser, *_lenient_settings(file))
 
 
-def _flattering(file: MooringFile) -> Iterator[LimitKey]:
-    """Yield the solver settings and piece settings that make the checks more lenient."""
+def _lenient_settings(file: MooringFile) -> Iterator[LimitKey]:
     solver, wire = file.solver, file.checks.minimum_tension.wire
     if isinstance(solver.strumming, StrummingFactor) and solver.strumming.factor < FACTOR:
         factor, source = solver.strumming.factor, "typical of measurements on strumming lines"

@@ -122,7 +122,7 @@ def assessment_of(
             own.setdefault(stand.leg.name, stand)
     found = [stand.result for stand in own.values() if stand.result is not None]
     legs = [each.leg for each in found] or [in_environments[0].leg]
-    whole = _whole(legs, any(each.type == "surface" for each in found))
+    whole = _joined_legs(legs, any(each.type == "surface" for each in found))
     acceptance = assessment.Acceptance.of_file(whole.file, day)
     graph = LegGraph.in_equilibrium(found)
     breaks, losses = graph.breaks(whole), graph.losses(whole)
@@ -167,8 +167,7 @@ def assessment_of(
     )
 
 
-def _whole(legs: Sequence[Leg], surface: bool) -> Leg:
-    """Join the pieces of all legs to a single leg, whose last piece is a stand-in for an anchor."""
+def _joined_legs(legs: Sequence[Leg], surface: bool) -> Leg:
     pieces = [piece for leg in legs for piece in leg.pieces]
     pieces.append(stand_in_anchor(0, len(pieces)))
     listed = tuple(replace(piece, index=index) for index, piece in enumerate(pieces))

@@ -1,6 +1,4 @@
-"""Rule that checks drag coefficients against their Reynolds range, with the effect of the drag
-curve of a smooth shape.
-"""
+"""Rule `drag-coefficient`: drag coefficients that are used outside their Reynolds range."""
 
 from __future__ import annotations
 
@@ -46,10 +44,9 @@ def drag_coefficient(results: Sequence[LegResult]) -> Iterator[_LegVerdict]:
 
 
 def _effect(result: LegResult, fast: set[int]) -> tuple[str, bool]:
-    """Describe how the drag curve of a smooth shape for the fast pieces changes the knockdown, or
-    the offset of a surface mooring.
+    """Describe how the drag curve for the `fast` pieces changes the knockdown or the offset.
 
-    The flag is true if the change is unfavourable.
+    The offset is used for a surface mooring. The flag is true if the change is unfavourable.
     """
     file = result.file
     if file.solver.drag == "reynolds" or result.leg.of_several:

@@ -27,9 +27,7 @@ _STRONG = re.compile(
     r"|return|sturm|tempête",
     re.IGNORECASE,
 )
-"""Words in the names of environments whose current should exceed that of the ordinary
-environment.
-"""
+"""Words in the names of environments whose current should be stronger than the ordinary current."""
 
 WEAKER = 0.5
 """Ratio to the ordinary current below which the current of a storm is doubtful."""
@@ -56,9 +54,9 @@ def environment(legs: Sequence[Leg]) -> Iterator[Found]:
 
 
 def _weaker_than(ordinary: Leg, other: Leg) -> Iterator[Found]:
-    """Warn if the stronger of two currents is much weaker than the ordinary current at some levels.
+    """Warn if the stronger current is much weaker than the ordinary current at some levels.
 
-    A current counts as the stronger one because of the name of its environment, or because its
+    The current of `other` counts as stronger because of the name of its environment, or because its
     maximum is larger. In the second case, it may be weaker at the upper and lower ends of the
     profile.
     """

@@ -250,17 +250,15 @@ def contradicted_material(component: Component | Outline) -> Iterator[str]:
     if not named or not made_of or named.keys() & made_of.keys():
         return
     one, other = next(iter(named.values())), next(iter(made_of.values()))
-    if _alike(one, other):
+    if _are_similar(one, other):
         return
     yield f"has the name `{component.name}`, but its `material` is {component.material}"
 
 
-def _alike(one: Material, other: Material) -> bool:
-    """Return whether the densities of two materials differ by less than 10 %, so that both names
-    are acceptable.
-    """
+def _are_similar(one: Material, other: Material) -> bool:
     if one.density is None or other.density is None:
         return one.family == other.family or one.density is other.density
+    # the names of both materials are acceptable if the densities differ by less than 10 %
     return abs(one.density - other.density) < 0.1 * other.density
 
 
@@ -275,8 +273,9 @@ def rope_section(component: Flexible) -> float:
 
 
 def _load_bearing(rope: Cable) -> list[Material]:
-    """Return the metals of a rope except lead, or its fibres if it has no metal; empty if a density
-    is unknown or the rope has a lead core.
+    """Return the metals of a rope without lead, or its fibres if the rope has no metal.
+
+    The list is empty if a density is unknown, or if a fibre rope has a lead core.
     """
     named = materials_in(rope.material)
     metals = [one for one in named if one.family == "metal" and one.name != "lead"]

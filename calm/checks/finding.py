@@ -19,7 +19,7 @@ _Key = TypeVar("_Key", bound=Hashable)
 _Made = TypeVar("_Made")
 
 AS_GIVEN = "as given"
-"""Name of the situation in which nothing is changed."""
+"""Name of the situation without changes."""
 
 OWN = "own"
 """Name of the environment that is defined in the mooring file itself."""
@@ -114,7 +114,7 @@ class Lack:
 
 @dataclass(frozen=True)
 class MissingFigure:
-    """A missing component value, with all rules and pieces that need it.
+    """A missing component value, with all rules and pieces that need the value.
 
     Attributes
     ----------
@@ -147,11 +147,8 @@ class MissingFigure:
 
 
 def _with_fields(kind: type[_Made], values: dict[str, Any]) -> _Made:
-    """Create an instance of a frozen dataclass directly from the values of its fields.
-
-    The constructor and `dataclasses.replace` are too slow for the tens of thousands of verdicts in
-    a check.
-    """
+    # the constructor and `dataclasses.replace` are too slow for the tens of thousands of verdicts
+    # in a check
     made = object.__new__(kind)
     vars(made).update(values)
     return made
@@ -231,7 +228,7 @@ def no_capacity(verdict: Verdict) -> bool:
 
 
 def percent_used(utilisation: float) -> float:
-    """Return a utilisation in percent, rounded up to an integer; it may be infinite.
+    """Return a utilisation in percent, rounded up to an integer or infinite.
 
     A utilisation above 1 therefore always exceeds 100 %.
     """
@@ -378,11 +375,14 @@ def rule(
 class Finding(Verdict):
     """Verdict of a rule on a mooring in an environment and a situation.
 
-    `source` is the source of the rule and its limit. `situation` names the change to the design; it
-    is `AS_GIVEN` for the unchanged design. For an accepted finding, `accept` is the entry in the
-    file, and `unaccepted` is the state that the finding would have without it. `probability` is the
-    probability that the limit is exceeded, if computed. `estimates` are the estimates on which the
-    finding relies.
+    Attributes
+    ----------
+    source : source of the rule and its limit
+    situation : name of the change to the design; `AS_GIVEN` for the unchanged design
+    accept : entry in the file by which the finding is accepted
+    unaccepted : state that an accepted finding would have without `accept`
+    probability : probability that the limit is exceeded, if computed
+    estimates : estimates on which the finding relies
     """
 
     mooring: str
@@ -453,10 +453,10 @@ def by_rule(findings: Iterable[Finding]) -> dict[str, list[Finding]]:
 
 
 def worst_of(findings: Iterable[Finding]) -> Finding:
-    """Return the most severe finding; among equals, the one with the largest utilisation, or
-    without utilisations the one with the least margin.
+    """Return the most severe finding.
 
-    A finding that is not judged is returned only if there is no other finding.
+    Among equally severe findings, the largest utilisation decides or, without utilisations, the
+    least margin. A finding that is not judged is returned only if there is no other finding.
     """
     found = [*findings]
     judged = [one for one in found if one.state is not State.NOT_JUDGED]
@@ -503,7 +503,6 @@ def governing_of_each_rule(findings: Iterable[Finding]) -> list[Finding]:
 
 
 def _is_overridden(finding: Finding) -> bool:
-    """Return whether an accepted finding is a failure, or has a utilisation above 100 %."""
     fails = finding.unaccepted is State.FAIL or (finding.utilisation or 0.0) > 1.0
     return finding.state is State.ACCEPTED and fails
 

@@ -67,7 +67,7 @@ def _grown_pieces(
         share = 1.0
         if isinstance(piece.component, files.Flexible) and bottom > fouling.depth:
             share = (fouling.depth - top) / (bottom - top)
-        upper, lower = _parted(whole, share)
+        upper, lower = _split(whole, share)
         yield replace(upper, component=grown_component(piece.component, fouling, gravity))
         if lower is not None:
             yield lower
@@ -106,8 +106,9 @@ def grown_component(
 def _larger(
     component: RigidComponent | FlexibleComponent, t: float
 ) -> tuple[dict[str, Any], float]:
-    """Return the drag values that biofouling increases, and the volume of the layer [m³, or m³ per
-    metre of line].
+    """Return the drag values that biofouling increases, and the volume of the layer.
+
+    The volume is in m³, or in m³ per metre of cable or chain.
     """
     if isinstance(component, files.Cable):
         d = component.diameter
@@ -138,9 +139,7 @@ def _larger(
 
 
 def _scales(component: files.Component, kn: float, t: float) -> tuple[float, float, float]:
-    """Return the factors by which the areas normal to the axis and along it increase, and the
-    volume of the layer [m³].
-    """
+    """Return the factors on the areas normal to and along the axis, and the layer volume [m³]."""
     if isinstance(component, files.Cylinder):
         d, length = component.diameter, component.length
         wide, long = d + 2.0 * t, length + 2.0 * t
@@ -157,8 +156,7 @@ def _scales(component: files.Component, kn: float, t: float) -> tuple[float, flo
     return (wide / d) ** 2, (wide / d) ** 2, pi / 6.0 * (wide**3 - d**3)
 
 
-def _parted(piece: files.Piece, share: float) -> tuple[files.Piece, files.Piece | None]:
-    """Split a piece, with its clamps, at a fraction of its length; the lower part may be None."""
+def _split(piece: files.Piece, share: float) -> tuple[files.Piece, files.Piece | None]:
     if share >= 1.0 or piece.length is None:
         return piece, None
     at = share * piece.length

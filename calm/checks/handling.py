@@ -229,7 +229,6 @@ def tangling(handling: Handling) -> Iterator[Verdict]:
 
 
 def _hauled_in(lowest: LinePart, arrival: float, rise: Recovery) -> Verdict:
-    """Report whether the lower end of a line with a surface float surfaces without hauling."""
     if isnan(arrival):
         depth = say("depth", float(rise.hangs_at[rise.released]))
         message = (
@@ -243,9 +242,6 @@ def _hauled_in(lowest: LinePart, arrival: float, rise: Recovery) -> Verdict:
 
 
 def _unsolved(handling: Handling, motion: str, failure: NoEquilibrium) -> Iterator[Verdict]:
-    """Report a launch or rise that could not be solved. The rule `equilibrium` reports a line
-    without equilibrium.
-    """
-    if handling.result is not None:
+    if handling.result is not None:  # otherwise, the rule `equilibrium` reports the line
         message = f"The {motion} of the line has no solution ({failure.status}): {failure.message}"
         yield unknown(None, message, failure.advice)

@@ -97,8 +97,10 @@ def _items(piece: Piece, length: float | None, gravity: float) -> Iterator[Inven
             name=part.component.name,
             clamped_on=None if part is piece else piece.label,
             cut_length=along,
-            dry_mass=_in_all(part.component, mass_in_air(part.component), along),
-            wet_weight=_in_all(part.component, -net_buoyancy(part.component, gravity), along),
+            dry_mass=_for_whole_piece(part.component, mass_in_air(part.component), along),
+            wet_weight=_for_whole_piece(
+                part.component, -net_buoyancy(part.component, gravity), along
+            ),
             lift_mass=None,
             at=getattr(part, "at", None),
             items=part.component.items or 1,
@@ -110,10 +112,9 @@ def _items(piece: Piece, length: float | None, gravity: float) -> Iterator[Inven
     yield from found[1:]
 
 
-def _in_all(component: Component, figure: float | None, length: float | None) -> float | None:
-    """Convert a value per metre of cable or chain to the whole piece. Values of other items are
-    unchanged.
-    """
+def _for_whole_piece(
+    component: Component, figure: float | None, length: float | None
+) -> float | None:
     if figure is None or not isinstance(component, Flexible):
         return figure
     return None if length is None else figure * length

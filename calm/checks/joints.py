@@ -49,11 +49,10 @@ def _needs_hardware(one: Piece, other: Piece) -> bool:
         return False
     if STAND_IN in (one.use, other.use) or (one.use == other.use and roles != {"line"}):
         return False
-    return _is_hard(one) and _is_hard(other)
+    return _only_joins_by_hardware(one) and _only_joins_by_hardware(other)
 
 
-def _is_hard(piece: Piece) -> bool:
-    """Return whether a piece can only be joined by hardware: a chain, a wire or a rigid piece."""
+def _only_joins_by_hardware(piece: Piece) -> bool:
     if not isinstance(piece.component, Cable):
         return True
     metal = any(one.family == "metal" for one in materials_in(piece.component.material))

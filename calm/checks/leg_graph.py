@@ -150,17 +150,15 @@ class LegGraph:
                 parts.append(run.union(*touched))
         return parts
 
-    def _free(self, cut: Collection[tuple[int, int]]) -> list[list[int]]:
-        """Return the pieces of each part that is not attached to a fixed end, in file order."""
+    def _free_parts(self, cut: Collection[tuple[int, int]]) -> list[list[int]]:
         return [
             sorted(one for one in part if isinstance(one, int))
             for part in self.parts(cut)
             if not part & {_SEABED, _HELD}
         ]
 
-    def _rising(self, cut: Collection[tuple[int, int]]) -> list[list[int]]:
-        """Return the free parts that contain a release, after all releases open."""
-        parts = self._free({*self.opened, *cut})
+    def _rising_parts(self, cut: Collection[tuple[int, int]]) -> list[list[int]]:
+        parts = self._free_parts({*self.opened, *cut})
         return [part for part in parts if not self.releases.isdisjoint(part)]
 
     @property
@@ -169,7 +167,7 @@ class LegGraph:
 
         In a design without a release, these are all pieces except anchors.
         """
-        parts = self._rising(()) if self.opened else self.chains
+        parts = self._rising_parts(()) if self.opened else self.chains
         return {one for part in parts for one in part if isinstance(one, int)}
 
     def breaks(self, whole: Leg) -> tuple[Break, ...]:
@@ -191,8 +189,8 @@ class LegGraph:
         ----------
         whole : all pieces of the design as one leg, which supplies the limits of the check
         """
-        rising = {one for part in self._rising(()) for one in part}
-        before = {one for part in self._free(()) for one in part}
+        rising = {one for part in self._rising_parts(()) for one in part}
+        before = {one for part in self._free_parts(()) for one in part}
         found: list[Break] = []
         places: list[tuple[Sequence[Hashable], int, list[int]]] = []
         for number, chain in enumerate(self.chains):
@@ -202,8 +200,10 @@ class LegGraph:
                 if below is None or opened or not isinstance(one, int) or one not in rising:
                     continue
                 cut = {(number, at)}
-                off = [each for part in self._free(cut) for each in part if each not in before]
-                margins = [(*self._margin(part, whole), part) for part in self._rising(cut)]
+                off = [
+                    each for part in self._free_parts(cut) for each in part if each not in before
+                ]
+                margins = [(*self._margin(part, whole), part) for part in self._rising_parts(cut)]
                 if not margins:
                     continue
                 margin, weight, required, part = min(margins, key=lambda each: each[0] - each[2])
@@ -211,7 +211,7 @@ class LegGraph:
                 found.append(Break(one, label, margin, weight, required, False, loose))
                 places.append((chain, at, part))
         for between in (("connector", "chain"), ("connector",)):
-            judged = [not self._beyond_help(*place, between) for place in places]
+            judged = [not self._strands_release(*place, between) for place in places]
             if any(judged):
                 break
         return tuple(replace(one, judged=judge) for one, judge in zip(found, judged, strict=True))
@@ -222,14 +222,14 @@ class LegGraph:
         drag = float(self.drags[part].sum())
         return float(lift.sum()), weight, _required_margin(whole, weight, drag)
 
-    def _beyond_help(
+    def _strands_release(
         self, chain: Sequence[Hashable], at: int, part: list[int], between: tuple[str, ...]
     ) -> bool:
         """Return whether a break strands the release in any design.
 
         This is so if the break divides the cluster of all remaining floats, or a short line between
-        this cluster and the release. `between` lists the kinds and roles of pieces that are allowed
-        between the floats of a cluster.
+        this cluster and the release. `between` lists the kinds and roles that may lie between the
+        floats of a cluster.
         """
         floats = {one for one in part if self._floats(one)}
         if not floats:
@@ -264,7 +264,9 @@ class LegGraph:
         whole : all pieces of the design as one leg, which supplies gravity and the limits of the
             check
         """
-        return tuple(loss for part in self._rising(()) for loss in self._losses_of(part, whole))
+        return tuple(
+            loss for part in self._rising_parts(()) for loss in self._losses_of(part, whole)
+        )
 
     def _losses_of(self, rising: list[int], whole: Leg) -> Iterator[Loss]:
         gravity, lift = whole.water.gravity, self.lifts[rising]
@@ -313,10 +315,9 @@ def _weight_when_flooded(component: Component, gravity: float) -> float:
 
 
 def _required_margin(leg: Leg, weight: float, drag: float) -> float:
-    """Return the net buoyancy required after a break [N], from the remaining weight in water [N]
-    and drag [N/(m/s)²].
+    """Return the net buoyancy required after a break [N].
 
-    It is a fraction of the weight, and at least the drag at `minimum_rise_speed`.
+    `weight` is the weight in water [N], and `drag` the drag [N/(m/s)²], of the remaining section.
     """
     checks = leg.file.checks
     return max(checks.backup_margin * weight, drag * checks.minimum_rise_speed**2)

@@ -1,5 +1,6 @@
-"""Rule `missing`: missing values of components, each reported once for all affected rules and
-pieces.
+"""Rule `missing`: missing values of components.
+
+Each missing value is reported once for all affected rules and pieces.
 """
 
 from __future__ import annotations

@@ -43,11 +43,6 @@ class PlannedPart:
 
 
 def _judge(handling: Handling) -> Iterator[Verdict]:
-    """Compare the depth of each part in still water with its planned depth.
-
-    If all parts are off by the same amount, they share one finding, because a single wrong value
-    explains them all.
-    """
     if handling.result is None:
         return
     parts, found = _judged(handling.result)
@@ -56,19 +51,16 @@ def _judge(handling: Handling) -> Iterator[Verdict]:
         remedy = "Set a `planned_depth`, or put the depth in the label, such as `meter 200 m`."
         yield verdict_on(None, State.NOT_JUDGED, message, remedy)
     elif _off_alike(handling.result, parts, found):
-        yield _all_alike(handling.result, parts, min(found, key=lambda one: one.rank))
+        # a single wrong value explains all errors, so the parts share one finding
+        yield _common_verdict(handling.result, parts, min(found, key=lambda one: one.rank))
     else:
         yield from found
 
 
 def _counted(handling: Handling) -> Iterator[Verdict]:
-    """Yield the verdict on each part, and also the common verdict if all parts are off by the same
-    amount.
-
-    Both are needed because the parts of a sample may differ in this respect from those of the
-    design.
-    """
     if handling.result is not None:
+        # both are needed: in a sample, the parts may be off by the same amount when those of the
+        # design are not, and vice versa
         yield from _judged(handling.result)[1]
         yield from (one for one in _judge(handling) if one.place is None)
 
@@ -85,9 +77,6 @@ def _judged(result: LegResult) -> tuple[list[PlannedPart], list[Verdict]]:
 
 
 def _off_alike(result: LegResult, parts: list[PlannedPart], found: list[Verdict]) -> bool:
-    """Return whether all parts are off by the same amount, and at least one exceeds its
-    tolerance.
-    """
     amounts = [part.off for part in parts]
     alike = max(amounts) - min(amounts) <= result.file.checks.planned_depth_warning
     return len(parts) > 1 and alike and any(one.state is not State.PASS for one in found)
@@ -116,9 +105,6 @@ def planned_parts(result: LegResult) -> list[PlannedPart]:
 
 
 def _verdict(file: MooringFile, part: PlannedPart, remedy: str) -> Verdict:
-    """Return the verdict on one part: a warning if the error exceeds the tolerance, a failure if it
-    exceeds the limit.
-    """
     checks, off = file.checks, part.off
     allowed = max(checks.planned_depth_warning, SHARE_OF_THE_PLAN * part.planned)
     limit = max(allowed, checks.planned_depth_limit * part.planned)
@@ -132,8 +118,7 @@ def _verdict(file: MooringFile, part: PlannedPart, remedy: str) -> Verdict:
     return at_most(part.row, abs(off), most, f"{message}.", remedy, beyond, source)
 
 
-def _all_alike(result: LegResult, parts: Sequence[PlannedPart], worst: Verdict) -> Verdict:
-    """Return the common verdict on all parts, with the value and limit of the most severe one."""
+def _common_verdict(result: LegResult, parts: Sequence[PlannedPart], worst: Verdict) -> Verdict:
     amounts = sorted((part.off for part in parts), key=abs)
     message = f"All {len(parts)} parts with a planned depth are "
     message += f"{_amount(amounts[0], amounts[-1])} in still water."
@@ -155,7 +140,7 @@ def _remedy(result: LegResult, parts: Sequence[PlannedPart], number: int) -> str
     """Name the lengths to check for a part.
 
     The error lies between the last part with the same depth error and the next part with a
-    different one, in the direction of the fixed end.
+    different depth error, in the direction of the fixed end.
     """
     above, allowed = (
         _hangs_from_above(result, parts[number]), result.file.checks.planned_depth_warning
@@ -176,8 +161,7 @@ def _remedy(result: LegResult, parts: Sequence[PlannedPart], number: int) -> str
 def _hangs_from_above(result: LegResult, part: PlannedPart) -> bool:
     """Return whether the depth of a part is determined by the lengths above it.
 
-    This is so below a float at the surface, and above a piece whose length is fitted to the top
-    depth.
+    This is so below a float at the surface, and above a piece that is cut to fit the top depth.
     """
     if result.type == "surface":
         return True

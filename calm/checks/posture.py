@@ -306,7 +306,7 @@ def reserve(leg: Leg) -> Iterator[Criterion]:
             )
         return (
             f"{message}; at least {100 * limit:.0f} % is required.",
-            "Use a larger float, or a lighter or longer line." + _too_long(leg),
+            "Use a larger float, or a lighter or longer line." + _too_long_remedy(leg),
         )
 
     source = cited(leg.file, "minimum_reserve")
@@ -336,14 +336,11 @@ def freeboard(result: LegResult) -> Iterator[Verdict]:
         f"Freeboard of the float is {say('freeboard', height)}."
         if height >= 0.0
         else f"The float is {say('depth', -height)} under water.",
-        "Use a larger float." + _too_long(result.leg),
+        "Use a larger float." + _too_long_remedy(result.leg),
     )
 
 
-def _too_long(leg: Leg) -> str:
-    """Return the additional remedy that the line may be too long, unless the float has a key that
-    only surface floats have.
-    """
+def _too_long_remedy(leg: Leg) -> str:
     top = leg.file.pieces[0].component
     if any(getattr(top, key, None) is not None for key in AFLOAT_KEYS):
         return ""

@@ -4,8 +4,8 @@ The release and everything above it rise together at terminal speed until the fi
 reaches the surface. This piece and everything rigidly connected to it stay there. If the line below
 it is buoyant, it continues to rise as a separate line in still water. The part of this line that is
 already suspended from the surface is included, so the computed rise is too slow. Buoyant pieces
-surface one after another. To surface, each one rises by the length of line between the previous one
-and itself. All other pieces are suspended below the surfaced ones.
+surface one after another. Each rises by the length of the line between the previously surfaced
+piece and itself. All other pieces are suspended below the surfaced pieces.
 
 The model neglects acceleration, and treats surfaced floats as fully immersed. It assumes that no
 piece is carried past a piece above it in the line. If the line tangles during ascent
@@ -154,7 +154,7 @@ def recovery_of(leg: Leg, result: LegResult) -> Recovery:
 def lifts_of(line: Line, water: Water, result: LegResult) -> Floats:
     """Return the net forces (n,) of the pieces with their clamps, positive up [N].
 
-    The water density is that at the depths of the pieces in equilibrium.
+    The net forces are computed with the water densities at the equilibrium depths of the pieces.
     """
     rows = slice(len(line.length))
     depth = 0.5 * (result.components.depth_top[rows] + result.components.depth_bottom[rows])
@@ -163,7 +163,6 @@ def lifts_of(line: Line, water: Water, result: LegResult) -> Floats:
 
 
 def _rise(line: Line, water: Water, top: float, settings: Settings) -> tuple[FreeMotion, bool]:
-    """Solve the rise of the whole line. The flag is true if the solution is for still water."""
     try:
         return solve_rise(line, water, top, settings), False
     except NoEquilibrium:
@@ -173,8 +172,7 @@ def _rise(line: Line, water: Water, top: float, settings: Settings) -> tuple[Fre
 def _risers(
     line: Line, water: Water, length: Floats, lifts: Floats, top: float, speed: float
 ) -> Iterator[tuple[int, float]]:
-    """Yield the pieces that are buoyant enough to surface on their own, and their surfacing times
-    [s].
+    """Yield each piece that is buoyant enough to surface alone, and its surfacing time [s].
 
     `length` are the stretched lengths [m] and `lifts` the net forces [N] of the pieces, both (n,).
     The upper end of the line is at the depth `top` [m] and rises with `speed` [m/s] at first. The

@@ -31,16 +31,13 @@ def serials_and_dates(handling: Handling) -> Iterator[Verdict]:
     yield from _repeated_labels(parts)
     yield from _repeated_serials(parts)
     yield from _releases(file)
-    yield from _days_of_parts(parts, file)
+    yield from _date_contradictions(parts, file)
     if file.document is not None:
-        for message in _document(file.document):
+        for message in _document_contradictions(file.document):
             yield _warning(None, message, "Check the `document` and its `history`.")
 
 
 def _repeated_labels(parts: Sequence[Part]) -> Iterator[Verdict]:
-    """Report labels that occur in several rows of the line, except labels of connectors and
-    anchors.
-    """
     rows: dict[str, dict[tuple[int, int], Part]] = defaultdict(dict)
     for part in parts:
         if part.place.part >= 0 and part.place.is_clamp:
@@ -58,7 +55,6 @@ def _repeated_labels(parts: Sequence[Part]) -> Iterator[Verdict]:
 
 
 def _repeated_serials(parts: Sequence[Part]) -> Iterator[Verdict]:
-    """Report serial numbers that are used for more than one item of the same component."""
     items: dict[tuple[str, str], list[Part]] = defaultdict(list)
     for part in parts:
         for serial in part.serials:
@@ -88,10 +84,7 @@ def _releases(file: MooringFile) -> Iterator[Verdict]:
         yield _warning(None, message, "Check the codes of the releases.")
 
 
-def _days_of_parts(parts: Sequence[Part], file: MooringFile) -> Iterator[Verdict]:
-    """Report batteries that end before the deployment or before the calibration, and calibrations
-    after the deployment.
-    """
+def _date_contradictions(parts: Sequence[Part], file: MooringFile) -> Iterator[Verdict]:
     deployed = file.deployed.date[:10] if file.deployed and file.deployed.date else None
     for part in parts:
         battery, calibrated = part.equipment.battery_until, part.equipment.calibrated
@@ -114,8 +107,7 @@ def _days_of_parts(parts: Sequence[Part], file: MooringFile) -> Iterator[Verdict
             yield _warning(part, message, remedy)
 
 
-def _document(document: DocumentKeys) -> Iterator[str]:
-    """Report contradictions between the title block and the revision history."""
+def _document_contradictions(document: DocumentKeys) -> Iterator[str]:
     history = document.history
     dated = [one for one in history if one.date is not None]
     for earlier, later in pairwise(dated):

@@ -98,11 +98,14 @@ def situations_of(design: Design) -> tuple[Situations, ...]:
     surface = None if design.several else reaches_the_surface(given[0].result.leg)
     legs = [each.result for each in given if each.result is not None]
     changed = [solved(name, each) for name, each in _changed(design, legs, surface)]
-    return (given, *(each for each in changed if not (surface and _shapeless(each[0]))))
+    return (
+        given,
+        *(each for each in changed if not (surface and _is_slack_in_still_water(each[0]))),
+    )
 
 
 def solved(name: str, design: Design) -> Situations:
-    """Solve a design; return one situation with the given name for each of its legs.
+    """Solve a design, and return one situation with the given name for each leg.
 
     Without an equilibrium, the result has a single situation, which contains the reason.
     """
@@ -185,8 +188,7 @@ def strumming_file(file: MooringFile) -> MooringFile | None:
     return replace(file, solver=solver)
 
 
-def _shapeless(situation: Situation) -> bool:
-    """Return whether a situation has no unique shape because a slack line is in still water."""
+def _is_slack_in_still_water(situation: Situation) -> bool:
     failure = situation.failure
     still = situation.name in (STILL, STILL_LOW)
     return still and failure is not None and failure.status == Status.SLACK.label
@@ -217,9 +219,7 @@ def as_deployed(design: Design) -> Design:
 
 
 def _deployed_file(file: MooringFile) -> MooringFile:
-    """Replace the values of a file with those under `deployed`. The file must not have a fitted
-    piece.
-    """
+    """Replace the values of a file with those under `deployed`; no piece may be cut to fit."""
     deployed = file.deployed
     assert deployed is not None
     items = {item.label: item for item in deployed.items}
@@ -288,7 +288,6 @@ _ANOTHER_SITE = 20.0
 
 
 def _far_away(leg: Leg) -> Verdict | None:
-    """Report a deployment far from the planned position."""
     assert leg.file.deployed is not None
     planned = leg.file.position or leg.file.environment.position
     there = leg.file.deployed.position
@@ -369,12 +368,12 @@ def currents(legs: Sequence[Leg]) -> Iterator[tuple[Leg, Verdict]]:
                 f"{say('speed', max(speeds))} in another; one of them may be in the wrong unit."
             )
             yield leg, verdict_on(None, State.WARN, message, "Check m/s and cm/s.", speed)
-        if speed >= LEAST_CURRENT and (left := _left_out(leg)):
+        if speed >= LEAST_CURRENT and (left := _uncovered_depths(leg)):
             remedy = "Add levels to the current, with one near the surface and one near the seabed."
             yield leg, verdict_on(None, State.WARN, left, remedy, speed)
     strongest = max(range(len(speeds)), key=speeds.__getitem__)
     speed = speeds[strongest]
-    for leg, recorded in _records(legs):
+    for leg, recorded in _strongest_of_records(legs):
         limit = SHARE_OF_ITS_RECORD * recorded
         if speed < limit:
             message = (
@@ -397,24 +396,18 @@ def currents(legs: Sequence[Leg]) -> Iterator[tuple[Leg, Verdict]]:
     )
 
 
-def _records(legs: Sequence[Leg]) -> Iterator[tuple[Leg, float]]:
-    """For each environment whose current is one time of a record, yield the leg and the strongest
-    current of the record [m/s].
-    """
+def _strongest_of_records(legs: Sequence[Leg]) -> Iterator[tuple[Leg, float]]:
+    """Yield one leg for each current record, and the strongest current of the record [m/s]."""
     sources = {leg.file.environment.current.record: leg for leg in legs}
     for source, leg in sources.items():
         if source is not None:
             yield leg, strongest_of(*source)
 
 
-def _left_out(leg: Leg) -> str:
-    """Describe the depths that a current profile does not cover; empty if it covers all.
-
-    A single speed at the surface counts as a current that is uniform with depth.
-    """
+def _uncovered_depths(leg: Leg) -> str:
     environment: Environment = leg.file.environment
     levels = environment.current.depth
-    if levels == (0.0,):
+    if levels == (0.0,):  # a single speed at the surface is uniform with depth
         return ""
     left = left_out(levels[0], levels[-1], leg.water.depth)
     return left and f"{left[0].upper()}{left[1:]}."

@@ -19,9 +19,7 @@ from calm.files.mooring_file import legs_of
 from calm.quantities import say
 
 WEAK_LINK = 0.5
-"""Ratio of a piece's strength to that of the cables on both sides, below which the piece is a weak
-link.
-"""
+"""Strength ratio of a piece to the cables on both sides, below which the piece is a weak link."""
 
 WEIGHT_OF_A_HINGE = 0.5
 """Weight in water below which a piece without length is not treated as hardware [N]."""
@@ -40,11 +38,11 @@ def allowable_load(component: Component, factors: SafetyFactors, surface: bool) 
 def governing_load(
     component: Component, working_factor: float, factor: float
 ) -> tuple[float | None, str]:
-    """Return the smaller of working load × `working_factor` and breaking load / `factor` [N], and
-    the key of this load rating.
+    """Return the allowable load [N], and the key of the load rating that governs it.
 
-    For a synthetic rope with both load ratings, only the breaking load counts. Return None and ""
-    if the component has no load rating.
+    The allowable load is the smaller of working load × `working_factor` and breaking load /
+    `factor`. For a synthetic rope with both load ratings, only the breaking load counts. Return
+    None and "" if the component has no load rating.
     """
     known, working = [], counted_working_load(component)
     if working is not None:
@@ -240,7 +238,6 @@ def strength_steps(result: LegResult) -> Iterator[Verdict]:
 
 
 def _is_estimated(component: Component) -> bool:
-    """Return whether the allowable load of a component is the lower bound of an estimate."""
     return any(
         getattr(component, one.quantity) in (one.low, one.low_in_waves)
         for one in component.estimate or ()
@@ -251,8 +248,10 @@ def _is_estimated(component: Component) -> bool:
 def _steps(
     result: LegResult, loads: Sequence[float | None]
 ) -> Iterator[tuple[float, Piece, float, float]]:
-    """For each piece between two cables, yield the strength ratio, the piece, its allowable load,
-    and the allowable load of the weaker cable [N].
+    """For each piece between two cables, compare its allowable load with the weaker cable.
+
+    Yield the ratio of the two loads, the piece, its allowable load [N], and the allowable load of
+    the cable [N].
     """
     cables = [
         load if isinstance(piece.component, Cable) else None
@@ -316,7 +315,7 @@ def anchor_weight(leg: Leg) -> Iterator[Criterion]:
     weight = _weight(leg)
 
     def words(required: float, result: LegResult) -> tuple[str, str]:
-        needs = f"{say('load', required)} is required ({_in_air(leg, required)})."
+        needs = f"{say('load', required)} is required ({_dry_mass_text(leg, required)})."
         if weight is None:
             return f"{_UNKNOWN_WEIGHT.capitalize()}; {needs}", _SET_WEIGHT
         weighs = f"The anchor weighs {say('load', weight)} in water; {needs}"
@@ -393,8 +392,8 @@ def anchor_sliding(leg: Leg) -> Iterator[Criterion]:
 
 
 ANCHOR_RULES = tuple(each.name for each in (anchor_weight, anchor_uplift, anchor_sliding))
-"""Rules that a sufficiently heavy anchor satisfies. The weight required by the first rule satisfies
-all of them in the same situation.
+"""Rules that a sufficiently heavy anchor satisfies. An anchor with the weight required by the first
+rule satisfies all three rules in the same situation.
 """
 
 
@@ -426,17 +425,15 @@ def heaviest(findings: Iterable[Finding]) -> dict[Place | None, Finding]:
 
 
 def _weight(leg: Leg) -> float | None:
-    """Return the weight of the anchor in water [N]; None if its material is unknown."""
     return leg.anchor_weight if leg.file.anchor.material_known else None
 
 
 def _heavier(leg: Leg, weight: float) -> str:
-    weighs = f"at least {say('load', weight)} in water ({_in_air(leg, weight)})"
+    weighs = f"at least {say('load', weight)} in water ({_dry_mass_text(leg, weight)})"
     return f"Use an anchor that weighs {weighs}."
 
 
-def _in_air(leg: Leg, weight: float) -> str:
-    """Describe the masses in air of steel and of concrete with a given weight in water [N]."""
+def _dry_mass_text(leg: Leg, weight: float) -> str:
     water = leg.water
     density = water.density_at(np.array(water.depth))
     steel, concrete = anchor_dry_mass(weight, float(density), water.gravity)

@@ -84,7 +84,7 @@ def wave_strength(evidence: MooringInWaves) -> Iterator[Verdict]:
         message = f"{load}; the limit is {say('load', limit)}.{_measured(row, 'greatest')}"
         remedy = "Use a stronger component, or a more elastic line."
         verdict = at_most(piece, tension, limit, message, remedy, source=source, figure=figure)
-        yield _sure(waves, verdict)
+        yield _unless_stiffness_unknown(waves, verdict)
 
 
 @rule("wave-slack")
@@ -109,7 +109,7 @@ def wave_slack(evidence: MooringInWaves) -> Iterator[Verdict]:
                 "Add weight, use a more elastic line, or simulate the mooring in the time domain "
                 "(`calm export`)."
             )
-            yield _sure(waves, at_least(piece, row.least, 0.0, message, remedy))
+            yield _unless_stiffness_unknown(waves, at_least(piece, row.least, 0.0, message, remedy))
 
 
 @rule("fatigue")
@@ -146,11 +146,12 @@ def fatigue(evidence: MooringInWaves) -> Iterator[Verdict]:
                 "Use a thicker component or a more elastic line, or renew the component sooner."
             )
             life = one.life * YEAR
-            yield _sure(waves, at_least(piece, life, limit, message, remedy, source=source))
+            yield _unless_stiffness_unknown(
+                waves, at_least(piece, life, limit, message, remedy, source=source)
+            )
 
 
 def _measured(row: PieceInWaves, which: Literal["greatest", "least"]) -> str:
-    """Describe the tensions that follow from measurements at sea."""
     if row.measured_low is None or row.measured_high is None:
         return ""
     tensions = sorted(getattr(each, which) for each in (row.measured_low, row.measured_high))
@@ -158,10 +159,8 @@ def _measured(row: PieceInWaves, which: Literal["greatest", "least"]) -> str:
     return f" Measurements at sea (SOFS) imply a tension of {low} to {high}."
 
 
-def _sure(waves: WaveAnalysis, verdict: Verdict) -> Verdict:
-    """Change a failure to unknown if the computed tensions may be too high because the stiffness of
-    a rope is unspecified.
-    """
+def _unless_stiffness_unknown(waves: WaveAnalysis, verdict: Verdict) -> Verdict:
+    # computed tensions may be too high if the stiffness of a rope is unspecified
     if verdict.state is not State.FAIL or not waves.warnings:
         return verdict
     message = f"{verdict.message} {' '.join(waves.warnings)}"

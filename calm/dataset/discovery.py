@@ -62,9 +62,7 @@ def hashed(path: Path) -> str:
 
 
 def kept(attributes: Mapping[str, Any]) -> Attributes:
-    """Return the attributes of an input file that also apply to results, such as platform, site and
-    creator.
-    """
+    """Select the attributes of an input file that also apply to results, such as the site."""
     return {
         name: value
         for name, value in attributes.items()

@@ -38,8 +38,7 @@ _ZEROS = bytes(1 << 20)
 
 
 def netcdf_of(layout: ResultLayout, block: int = 0) -> bytes:
-    """Return the content of a new NetCDF file for a layout, in which time-dependent variables are
-    empty.
+    """Return the content of a new NetCDF file, in which time-dependent variables are empty.
 
     These variables are divided into chunks of `block` times.
     """
@@ -81,7 +80,7 @@ def write_netcdf(
     path: Path,
     last: Callable[[], Attributes] = dict,
 ) -> None:
-    """Write a NetCDF file block by block; it has a temporary name until it is complete.
+    """Write a NetCDF file block by block. An incomplete file has a temporary name.
 
     Parameters
     ----------
@@ -127,7 +126,6 @@ def write_netcdf(
 
 
 def _take_room(handle: int, size: int) -> None:
-    """Extend a file to a minimum size, and reserve the disk space."""
     if hasattr(os, "posix_fallocate"):
         os.posix_fallocate(handle, 0, size)
         return
@@ -136,8 +134,9 @@ def _take_room(handle: int, size: int) -> None:
 
 
 def chunk_shape(layout: ResultLayout, variable: Variable, block: int) -> tuple[int, ...]:
-    """Return the chunk shape of a time-dependent variable, which also applies to an incomplete last
-    chunk.
+    """Return the chunk shape of a time-dependent variable.
+
+    An incomplete last chunk has this shape, too.
 
     Parameters
     ----------
@@ -176,11 +175,9 @@ def _define(file: h5netcdf.File, layout: ResultLayout, variable: Variable, block
 
 
 def _text(value: str | float) -> str | float | np.bytes_:
-    """Convert a text to characters, which every tool can read; a text that is long or not ASCII
-    remains a string.
-    """
     if isinstance(value, float):
         return value
+    # every tool can read characters; long texts and other alphabets need a string
     return np.bytes_(value) if value.isascii() and len(value) < _LONG else value
 
 
@@ -247,9 +244,7 @@ class Variable:
 
     @property
     def described(self) -> Attributes:
-        """Attributes; those of a numeric variable include the ACDD attribute
-        `coverage_content_type`.
-        """
+        """Attributes, with the ACDD attribute `coverage_content_type` for a numeric variable."""
         if "units" not in self.attributes and "flag_meanings" not in self.attributes:
             return self.attributes
         content = "modelResult"
@@ -262,8 +257,7 @@ class Variable:
 
 @dataclass(frozen=True)
 class ResultLayout:
-    """Variables, dimensions and attributes of a result; time-dependent variables have no values
-    yet.
+    """Variables, dimensions and attributes of a result, without time-dependent values.
 
     Attributes
     ----------

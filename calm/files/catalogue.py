@@ -54,7 +54,7 @@ Defined = Component | Assembly | Outline
 
 @dataclass(frozen=True)
 class Catalogue:
-    """Component definitions in levels; earlier levels take precedence over later levels.
+    """Component definitions in levels, the level with the highest precedence first.
 
     A definition hides all definitions with the same id in later levels.
     """
@@ -99,10 +99,7 @@ class Catalogue:
         return Catalogue(({entry.id: entry for entry in entries}, *self.levels))
 
     def _completed(self, entry: CatalogueEntry) -> CatalogueEntry:
-        """Merge an entry without `kind` with the definition of the same id in this catalogue.
-
-        Keys without a value are dropped. Assemblies have no values to complete.
-        """
+        """Merge an entry without `kind` with the definition of the same id in this catalogue."""
         below = self.entry(entry.id)
         given = {key: value for key, value in entry.section.data.items() if value is not None}
         section = entry.section.holding(given)
@@ -223,7 +220,7 @@ def define(
     Parameters
     ----------
     entry : catalogue entry of the definition
-    section : mapping to validate: either that of the entry, or overrides with the entry as base
+    section : mapping to validate: the section of the entry, or overrides based on that section
     also_allowed : keys that may be in the section although they do not belong to the component
     context : `IN_AIR` for a component used in air, otherwise None
     """
@@ -264,7 +261,7 @@ class CatalogueEntry:
 
     @property
     def replaces(self) -> list[str]:
-        """Keys of this entry that override its base, without keys such as `source` and `note`."""
+        """Keys that override the base definition, without keys such as `source` and `note`."""
         base = self.section.base
         given = frozenset[str]() if base is None else self.section.own & base.data.keys()
         return sorted(given - {"source", "sources", "searched", "note", "date"})
@@ -333,7 +330,7 @@ class UnreadLevel(Level):
 
 
 def read_level(paths: Iterable[Path], problems: list[Problem]) -> Level:
-    """Read the entries of several catalogue files, by id; add all mistakes to `problems`.
+    """Read the entries of several catalogue files by id. Mistakes are added to `problems`.
 
     An id that is defined twice is a mistake.
     """

@@ -117,7 +117,7 @@ class WordIndex:
         return self._listed.get(id)
 
     def figures(self, id: str) -> Figures:
-        """Return the known values of a component by column key; always empty in this index."""
+        """Return the values of a component by column key; this index contains no values."""
         return {}
 
     def suggested(self, text: str, near: str | None) -> list[str]:
@@ -146,17 +146,19 @@ class WordIndex:
 
         A limit is a word such as ``breaking>50kN``. Hyphens separate words as blanks do, because
         spellings vary. A size such as ``8mm`` or ``17 in`` also matches an equal size in another
-        unit. Complete components precede outlines. Components that contain the words themselves
-        precede components that match through a synonym or their source. Among equally good matches,
-        the components used most often in the shipped lines come first.
+        unit.
+
+        Components that contain the words themselves precede components that match through a synonym
+        or their source. Within these two groups, complete components precede outlines. Among
+        equally good matches, the components used most often in the shipped lines come first.
 
         Parameters
         ----------
         text : words and limits
         kinds : kinds of components to search; by default all
         first : ids to list first, in this order; only exact matches precede them
-        by : key of the column whose values sort the result, in descending order of magnitude, with
-            unknown values last; by default the best matches come first
+        by : key of the column that sorts the result, largest magnitude first and unknown values
+            last; by default the best matches come first
         """
         plain, limits = _parsed(text)
         terms = _terms(plain)
@@ -198,7 +200,10 @@ class WordIndex:
     def _ranked(
         self, hits: Iterable[Listed], terms: Sequence[Term], first: Sequence[str]
     ) -> list[Listed]:
-        """Sort components by `_rank`; those with ids in `first` come first."""
+        """Sort components: exact ids first, then ids in `first` in their order, then by `_rank`.
+
+        Components that match only through a synonym or their source do not move up by `first`.
+        """
         places = {id: number for number, id in enumerate(first)}
 
         def order(each: Listed) -> tuple[bool, int, bool, bool, int, int]:
@@ -248,7 +253,6 @@ class Term:
 
 
 def _terms(plain: str) -> list[Term]:
-    """Split a text without limits into words and sizes."""
     words = [Term(word, (word,)) for word in _words(_SIZE.sub(" ", plain))]
     sizes = [
         Term(found[0], tuple(_words(found[0])), _metres(*found.groups()))
@@ -258,7 +262,6 @@ def _terms(plain: str) -> list[Term]:
 
 
 def _parsed(text: str) -> tuple[str, list[Wanted]]:
-    """Split a text into plain words, in lower case, and limits."""
     parsed = [(word.casefold(), wanted(word)) for word in text.split()]
     limits = [limit for _, limit in parsed if limit is not None]
     return " ".join(word for word, limit in parsed if limit is None), limits
@@ -269,14 +272,13 @@ def _words(text: str) -> list[str]:
 
 
 def _metres(number: str, unit: str) -> float:
-    """Convert a size to metres: `1 1/4` and `1-1/4` inches are 1.25 inches."""
+    # `1 1/4` and `1-1/4` are both 1.25
     value = sum(float(Fraction(each.replace(",", "."))) for each in _words(number))
     return value * {"mm": 1e-3, "cm": 1e-2}.get(unit, 0.0254)
 
 
 @cache
 def _uses() -> Counter[str]:
-    """Count the uses of each component in the lines shipped with CALM."""
     files = sorted(shipped_folder("lines").glob("*.yaml"))
     return Counter(id for file in files for id in _USE_KEY.findall(file.read_text("utf-8")))
 
@@ -381,8 +383,10 @@ COLUMNS = (
     CatalogueColumn("drag", "drag N", "force", "N", 1.0, 1),
     CatalogueColumn("mass", "mass kg", "mass", "kg", 1.0, 1),
 )
-"""Columns of the component list: net buoyancy in water, positive up; loads; depth rating; normal
-drag at 1 m/s; mass in air. For a cable or chain all values are per metre, except loads and depth.
+"""Columns of the component list.
+
+Net buoyancy is in water and positive up. Drag is the normal drag at 1 m/s, and mass is in air. For
+a cable or chain, all values except loads and depths are per metre.
 """
 
 

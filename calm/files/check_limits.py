@@ -32,7 +32,7 @@ THE_DESIGN = "the design"
 
 @dataclass(frozen=True)
 class Limit:
-    """Annotation that gives a key of `checks:` the source of its default value.
+    """Annotation that gives a key of `checks:` its default and the source of the default.
 
     Attributes
     ----------
@@ -174,15 +174,12 @@ LENIENT_IF_GREATER = (
     *("breaking_load", "working_load", "opening_load", "grip"),
     *("depth_rating", "max_tilt", "warn_tilt", "buoyancy"),
 )
-"""Component limits, and buoyancy, for which a larger value makes the check more lenient."""
+"""Component keys for which a larger value makes the check more lenient."""
 LENIENT_IF_LESS = (
     *("weight", "diameter", "cn", "ct", "cx", "cd", "drag_area", "kn", "kt"),
     *("k_surface", "wind_area", "wind_cd"),
 )
-"""Component weight and drag, for which a smaller value makes the check more lenient.
-
-Anchors are an exception.
-"""
+"""Component keys for which a smaller value makes the check more lenient, except for anchors."""
 
 
 @dataclass(frozen=True)

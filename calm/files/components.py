@@ -240,7 +240,7 @@ class Anchor(definition.Definition):
 
     @property
     def material_density(self) -> float | None:
-        """Specified density of the anchor, or that of its material [kg/m³]; None if unknown."""
+        """Density of the anchor, specified or from its material [kg/m³]; None if unknown."""
         return self.density or density_of(self.material)
 
     @property

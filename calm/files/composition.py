@@ -72,7 +72,7 @@ class _Parser(yaml.SafeLoader):
 
 
 class _TooDeep(Exception):
-    """Collections are nested too deeply."""
+    pass
 
 
 def compose(text: str) -> Composition:
@@ -91,7 +91,7 @@ def compose(text: str) -> Composition:
 
 
 def _is_read_differently(text: str) -> bool:
-    """True if the Python parser may read tabs, byte-order marks or tags of the text differently."""
+    """True if the two parsers may read the tabs, byte-order marks or tags of a text differently."""
     return "\t" in text or "\ufeff" in text or ("!" in text and _TAG.search(text) is not None)
 
 
@@ -106,7 +106,7 @@ def _composed_by_python(text: str, start: int, plain: str) -> Composition:
 
 
 class _Reader:
-    """Converter of the events of a text to nodes, which also collects the refused parts.
+    """Converter of YAML events to nodes, with a list of the rejected parts.
 
     Parameters
     ----------
@@ -123,7 +123,6 @@ class _Reader:
         self._anchors: set[str] = set()
 
     def read(self) -> Composition:
-        """Read the nodes of the only document."""
         self._next()  # start of the stream
         if isinstance(self._next(), events.StreamEndEvent):
             return Composition(None)
@@ -137,7 +136,7 @@ class _Reader:
         return Composition(root, tuple(self._refusals))
 
     def _node(self, event: events.NodeEvent, depth: int) -> Node:
-        """Build the node that begins with an event, including all nodes inside it."""
+        """Build a node from its first event and from the events of all nodes inside it."""
         if depth > _DEEPEST:
             raise _TooDeep
         mark = event.start_mark

@@ -60,7 +60,7 @@ class QuantityField(QuantityRange):
         return self.json_schema()
 
     def json_schema(self) -> dict[str, Any]:
-        """Return the JSON Schema of the quantity as written in a file; the schema omits limits."""
+        """Return the JSON Schema of the quantity as written in a file, without its limits."""
         kind = DIMENSIONS[self.dimension]
         number = r"^\s*[-+]?[0-9.]+([eE][-+]?[0-9]+)?(\s*[0-9]*/[0-9]+)?"
         if not kind.unit:
@@ -86,7 +86,7 @@ class ColumnHeading(str):
 
 
 def described(description: str, example: object, **default: Any) -> Any:
-    """Declare a key of a model; it is required unless `default` or `default_factory` is set."""
+    """Declare a key of a model, which is required unless `default` or `default_factory` is set."""
     return Field(description=description, examples=[example], **default)
 
 
@@ -240,7 +240,7 @@ class EstimatedFigure(Model):
 
     @property
     def bounds_text(self) -> str:
-        """The bounds and the best estimate, such as ``at least 7.36 kN, probably 33.18 kN``."""
+        """Text of the bounds and the best estimate: ``at least 7.36 kN, probably 33.18 kN``."""
         name = self.quantity if self.quantity in ("max_tilt", "depth_rating") else "load"
         text, best = f"at least {say(name, self.low)}", self.value
         if self.low_in_waves is not None:
@@ -249,7 +249,7 @@ class EstimatedFigure(Model):
 
     @property
     def in_words(self) -> str:
-        """The bounds, the best estimate, the source and its quality."""
+        """Text of the bounds, the best estimate, the source and its quality."""
         quality = f", quality {self.quality}" if self.quality is not None else ""
         return f"{self.bounds_text} ({self.source}{quality})"
 

@@ -274,11 +274,11 @@ def read_environment(
     notices : list to which remarks are added
     towed : whether the environment is for a tow, which may be in air or have no water depth
     position : position that selects the profile in a current file with several profiles
-    open_files : whether current files are read; if False, the result is None if a file is needed
+    open_files : whether current files are read; if False, an environment with a file gives None
     """
     keys = validate(TowEnvironmentKeys if towed else EnvironmentKeys, section)
     if keys is None:
-        _check_tables(section)
+        _check_tables(section)  # so that all mistakes are reported together
         return None
     before = len(section.problems)
     moored = keys if isinstance(keys, EnvironmentKeys) else None
@@ -329,11 +329,7 @@ STRONGEST_WIND = 75.0
 
 
 def _current_doubts(current: CurrentTable, depth: float | None) -> list[str]:
-    """Return remarks about implausible currents in a table of the file.
-
-    A current from a record gives no remarks here, because the record reports its own remarks.
-    """
-    if current.record is not None:
+    if current.record is not None:  # the record reports its own remarks
         return []
     levels, u, v = (np.array(each) for each in (current.depth, current.u, current.v))
     water_depth = math.inf if depth is None else depth
@@ -365,14 +361,9 @@ def _seabed(
     section: SourceMapping,
     notices: list[str],
 ) -> Seabed | None:
-    """Return the seabed; a grid is read from its file over the area that the mooring may reach.
+    """Return the seabed; a depth grid is read over the area that the mooring may reach.
 
-    Parameters
-    ----------
-    where : latitude and longitude [degrees]; None if not given
-    depth : water depth [m]
-    section : the environment
-    notices : list to which remarks are added
+    `where` is latitude and longitude [degrees]; `depth` is the water depth [m].
     """
     if not isinstance(given, SeabedFile):
         return given
@@ -396,7 +387,6 @@ def _seabed(
 
 
 def _check_depth_range(keys: EnvironmentKeys, section: SourceMapping) -> None:
-    """Check that low water comes before high water, with the depth between them."""
     depth, (low, high) = keys.depth, keys.depth_range or (keys.depth, keys.depth)
     if not low <= depth <= high:
         message = (
@@ -407,7 +397,6 @@ def _check_depth_range(keys: EnvironmentKeys, section: SourceMapping) -> None:
 
 
 def _check_wind(keys: TowEnvironmentKeys, section: SourceMapping) -> None:
-    """Check that wind blows over water, and that a wind-driven current has a known depth."""
     if keys.wind is None:
         return
     if keys.fluid == "air":
@@ -457,7 +446,6 @@ def _current(
 
 
 def _check_tables(section: SourceMapping) -> None:
-    """Validate the tables even if other keys have mistakes, so that all mistakes are reported."""
     water.check_density(section)
     table = water.table_of(section.data.get("current"))
     if table is not None:

@@ -65,9 +65,10 @@ class Differences:
 
     Attributes
     ----------
-    changed : changed values: first those outside the line, then those in the line from the top down
-    moved : parts that have moved within the line; each `Change` has the part above the moved part
-        in the first and in the second line
+    changed : changed values: first values outside the line, then values in the line from the top
+        down
+    moved : parts that have moved within the line; the values of each `Change` are texts, such as
+        ``below wire 1``
     removed, added : labels of removed and added pieces and clamps
     pairs : matched pieces and clamps, in the order of the first line
     """
@@ -109,7 +110,7 @@ def differences(before: MooringFile, after: MooringFile) -> Differences:
         (pieces, *lines),
         (clamps, parts[0], parts[1]),
     ]
-    changed = [*_changes("", _around(before), _around(after))]
+    changed = [*_changes("", _figures_outside_line(before), _figures_outside_line(after))]
     for found, first, second in kinds:
         names, others = (own_labels([part.label for part in each]) for each in (first, second))
         for i, j in found.pairs:
@@ -148,10 +149,10 @@ def _known_pieces(pieces: Sequence[Piece]) -> list[Known]:
 def _known_clamps(
     clamps: Sequence[tuple[int, Clamp]], partner: Mapping[int, int] | None
 ) -> list[Known]:
-    """Return the contents of clamps, which match only if their pieces are matched.
+    """Return the contents of clamps, which match only if their pieces match.
 
-    `partner` gives the index of the matched piece in the other line. For the clamps of the second
-    line, `partner` is None.
+    `partner` maps the pieces of the first line to their matches in the second line. For the clamps
+    of the second line, `partner` is None.
     """
     labels = own_labels([clamp.label for _, clamp in clamps])
     known = []
@@ -177,7 +178,6 @@ def _of_part(
 
 
 def _part_figures(part: Piece | Clamp, name: str) -> dict[str, ComparedValue]:
-    """Return the values that the line sets for a part, without its component definition."""
     found = {"use": _figure("use", part.use), "label": _figure("label", name)}
     if isinstance(part, Clamp):
         found["at"] = _figure("at", part.at)
@@ -189,8 +189,7 @@ def _part_figures(part: Piece | Clamp, name: str) -> dict[str, ComparedValue]:
     return found | _figures(part.equipment)
 
 
-def _around(file: MooringFile) -> dict[str, ComparedValue]:
-    """Return all values outside the line."""
+def _figures_outside_line(file: MooringFile) -> dict[str, ComparedValue]:
     found = {name: _figure(name, getattr(file, name) or None) for name in ("name", "description")}
     # position and sea states follow from other values
     around = _figures(file.environment, frozenset({"position", "seas"}))
@@ -210,7 +209,6 @@ def _around(file: MooringFile) -> dict[str, ComparedValue]:
 
 
 def _figures(part: Any, left_out: frozenset[str] = frozenset()) -> dict[str, ComparedValue]:
-    """Return the values of a model by name; fields of nested models have dotted names."""
     found: dict[str, ComparedValue] = {}
     model = type(part).model_fields if isinstance(part, BaseModel) else {}
     for name, value in _fields(part).items():
@@ -259,7 +257,6 @@ def _of_current(table: CurrentTable) -> ComparedValue:
 
 
 def _value_text(value: Any) -> str:
-    """Convert a value that is neither a number nor None to text."""
     if isinstance(value, BaseModel) or is_dataclass(value):
         given = {name: one for name, one in _fields(value).items() if one is not None}
         value = {name: one for name, one in given.items() if not isinstance(one, tuple) or one}
@@ -371,8 +368,8 @@ def _pair_between(
 ) -> None:
     """Match the parts with equal keys, in order, between two parts that are already matched.
 
-    Matched indices are added to `pairs`, and removed from `left` and `right`. `way` is the index of
-    the key.
+    Matches are added to `pairs`, and removed from `left` and `right`. `way` is the index of the
+    key.
     """
     if not left or not right:
         return

@@ -22,9 +22,9 @@ def listed_serials(given: str | tuple[str, ...] | None) -> tuple[str, ...]:
 class Equipment(definition.Model):
     """Keys that describe the individual equipment at one position in the line.
 
-    In an item or clamp, `serial` is a text, or a list of texts: one for each of the `items` of each
-    piece that `count` produces. After reading, each piece has its own serial numbers, and
-    `planned_depth` may also come from a depth in the label.
+    In an item or clamp, `serial` is one number or a list of numbers. A list contains the numbers of
+    all pieces that `count` produces; a pair of releases has two numbers per piece. After reading,
+    each piece has its own serial numbers, and `planned_depth` may come from a depth in the label.
     """
 
     serial: Text | Annotated[tuple[Text, ...], Field(min_length=1)] | None = optional(
@@ -158,19 +158,16 @@ def check_counted(item: SourceMapping, count: int, items: int | None) -> None:
             of = f" of {each} items each" if each > 1 else ""
             message = f"`serial` has {len(serials)} numbers for a count of {count}{of}"
             item.refuse((*place, "serial"), message)
-        elif _is_list(serials) and (twice := _numbers_twice(serials)):
+        elif _is_list(serials) and (twice := _repeated_number(serials)):
             item.refuse((*place, "serial"), f"`serial` lists {shown(twice)} twice")
         if isinstance(data, dict) and "planned_depth" in data and count > 1:
             message = f"`planned_depth` is for single pieces; this item has a `count` of {count}"
             item.refuse((*place, "planned_depth"), message, key=True)
 
 
-def _numbers_twice(serials: Sequence[object]) -> str:
-    """Return the first serial number that occurs twice in a list, or "".
-
-    Texts without digits, such as question marks, may be repeated.
-    """
+def _repeated_number(serials: Sequence[object]) -> str:
     texts = [str(one) for one in serials]
+    # texts without digits, such as question marks, may be repeated
     numbers = (one for one in texts if any(digit.isdigit() for digit in one))
     return next((one for one in numbers if texts.count(one) > 1), "")
 

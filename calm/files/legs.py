@@ -100,7 +100,6 @@ FREE, ANCHORED = EndKeys(), EndKeys(anchor=AnchoredKeys())
 
 
 def _end_given(value: object) -> object:
-    """Return the keys of a leg end; `free` has none."""
     if value == "free":
         return {}
     if not isinstance(value, dict):
@@ -173,7 +172,7 @@ def stand_in_anchor(index: int, item: int) -> Piece:
 def read_legs(
     top: SourceMapping, reader: LineReader, position: Position | None
 ) -> tuple[tuple[FileLeg, ...], tuple[Piece, ...]]:
-    """Read the legs of a file; return the legs, and the pieces of all legs in file order.
+    """Read the legs of a file. Return the legs, and the pieces of all legs in file order.
 
     Parameters
     ----------
@@ -221,8 +220,6 @@ def read_legs(
 
 
 def _ends(keys: LegKeys, own: SourceMapping, pieces: Sequence[Piece]) -> tuple[EndKeys, EndKeys]:
-    """Check and return the ends of a leg; an anchor as last piece makes the lower end anchored."""
-
     def refuse(place: tuple[str | int, ...], message: str) -> None:
         own.refuse(place, message, key=bool(place))
 
@@ -281,7 +278,6 @@ def check_held_depths(legs: Sequence[FileLeg], top: SourceMapping, depth: float 
 
 
 def _check_net(legs: Sequence[FileLeg], top: SourceMapping) -> None:
-    """Check that legs meet at every node, and that every leg is held."""
     section = top.child("legs")
     joins = [
         (leg, name, end.join)
@@ -311,10 +307,7 @@ def _check_net(legs: Sequence[FileLeg], top: SourceMapping) -> None:
 
 
 def _check_held(legs: Sequence[FileLeg], section: SourceMapping) -> None:
-    """Check that every leg is connected to an anchor or a held end, directly or by other legs.
-
-    Two anchors may share a position only if the file specifies the positions of both.
-    """
+    """Check that every leg is connected to an anchor or a held end, directly or by other legs."""
     held: set[str] = set()
     reached: set[str | None] = set()
     while True:
@@ -327,6 +320,7 @@ def _check_held(legs: Sequence[FileLeg], section: SourceMapping) -> None:
         if more == held:
             break
         held = more
+    # two anchors may share a position only if the file specifies both positions
     stand: dict[tuple[float, float], str] = {}
     for leg in legs:
         anchor = leg.bottom.anchor

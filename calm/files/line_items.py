@@ -73,7 +73,7 @@ class LineReader:
                     self._assembly(entry, section)
 
     def read(self, section: SourceMapping, key: str) -> tuple[Piece, ...]:
-        """Read the list of items under a key; return the pieces that the items produce.
+        """Read the list of items under a key, and return the pieces that the items produce.
 
         Items with mistakes are skipped, and their mistakes are recorded.
         """
@@ -87,7 +87,6 @@ class LineReader:
         return tuple(pieces)
 
     def _items(self, section: SourceMapping, key: str) -> list[SourceMapping]:
-        """Return the items of a list; items that are not mappings are recorded as mistakes."""
         found = section.data[key]
         if not isinstance(found, (list, tuple)):
             section.refuse((key,), f"`{key}` must be a list of items, as `{key}: [{{use: sbe37}}]`")
@@ -109,7 +108,7 @@ class LineReader:
         items = (definition.items or 1) if isinstance(definition, Component) else None
         item_keys.check_counted(item, count, items)
         if entry is None or definition is None:
-            self._unknown_kind(item, judged=entry is not None)
+            self._check_without_kind(item, judged=entry is not None)
             self._clamps(item, None)
             return ()
         if isinstance(definition, Assembly):
@@ -131,12 +130,11 @@ class LineReader:
             for part, piece in enumerate(once, first)
         )
 
-    def _unknown_kind(self, item: SourceMapping, *, judged: bool) -> None:
+    def _check_without_kind(self, item: SourceMapping, *, judged: bool) -> None:
         """Check the keys of an item whose component is unknown or has mistakes.
 
-        The length is checked. Unless `judged`, other keys are checked, too: keys that no kind of
-        component has are rejected, and values are checked if the key has the same dimension in all
-        kinds.
+        Unless the keys were `judged` with the definition, keys that no kind has are rejected. A
+        value is checked if its key has the same dimension in all kinds.
         """
         if item.data.get("length", "fit") != "fit":
             self._quantity(item, "length", POSITIVE_LENGTH, "")
@@ -179,7 +177,7 @@ class LineReader:
         clamps = self._clamps(item, length)
         place = item.problem((), "")
         use = item.data["use"]
-        self._tell_of_mass(use, component)
+        self._notice_unknown_mass(use, component)
         return Piece(
             index=0,
             use=use,
@@ -231,8 +229,7 @@ class LineReader:
             item.refuse((key,), f"`{key}` is only for `length: fit`", key=True)
         return None
 
-    def _tell_of_mass(self, use: str, component: Component) -> None:
-        """Add a notice if the net force in water is used as the weight in air."""
+    def _notice_unknown_mass(self, use: str, component: Component) -> None:
         if self._in_air and component.mass is None and component.displaced_volume is None:
             notice = (
                 f"{use}: the mass is unknown; its net force in water is used as its weight in air"
@@ -240,7 +237,6 @@ class LineReader:
             self._notices += [notice] * (notice not in self._notices)
 
     def _clamps(self, item: SourceMapping, length: float | None) -> tuple[Clamp, ...]:
-        """Read the clamps of an item; clamps beyond the end of the piece are rejected."""
         clamps: list[Clamp] = []
         for clamp in self._items(item, "clamps") if "clamps" in item.data else ():
             entry = self._entry(clamp)
@@ -258,7 +254,7 @@ class LineReader:
                 )
                 clamp.refuse(("at",), message)
             if isinstance(component, Rigid) and at is not None:
-                self._tell_of_mass(clamp.data["use"], component)
+                self._notice_unknown_mass(clamp.data["use"], component)
                 where = Place(0, clamp=len(clamps))
                 own = self._equipment(clamp, component, clamped=True)
                 label = self._label(clamp)
@@ -272,19 +268,15 @@ class LineReader:
     def _equipment(
         self, item: SourceMapping, component: Component, *, clamped: bool
     ) -> item_keys.Equipment:
-        """Read the keys for individual equipment.
-
-        The default of `planned_depth` is the depth in the label.
-        """
         equipment, label = item_keys.read_equipment(item), item.data.get("label")
         if equipment.planned_depth is not None or not isinstance(label, str):
             return equipment
         serial = equipment.serial if isinstance(equipment.serial, str) else None
+        # a depth in the label is the default of `planned_depth`
         named = named_depth(label, component, serial, clamped=clamped)
         return equipment if named is None else equipment.planned_for(named)
 
     def _assembly(self, entry: CatalogueEntry, item: SourceMapping) -> tuple[Piece, ...]:
-        """Expand an assembly to pieces, all with the position of the item that uses it."""
         if entry.id in self._open:
             item.refuse(("use",), f"assembly `{entry.id}` contains itself")
             return ()
@@ -292,7 +284,7 @@ class LineReader:
             self._open.append(entry.id)
             self._assemblies[entry.id] = self.read(entry.section.into(self._problems), "parts")
             self._open.pop()
-        place = item.problem((), "")
+        place = item.problem((), "")  # all pieces get the position of the item
         prefix, named = f"{self._label(item)} " if "label" in item.data else "", self._named(item)
         line, column = place.line, place.column
         return tuple(
@@ -351,7 +343,7 @@ class LineReader:
         entry: CatalogueEntry,
         item: SourceMapping,
     ) -> tuple[Piece, ...]:
-        """Copy values of an assembly to the parts of the assembly that lack them."""
+        """Set the values of an assembly on those parts that lack them."""
         for key in ASSEMBLY_FIGURES:
             value = getattr(assembly, key)
             if value is None:
@@ -368,7 +360,6 @@ class LineReader:
         return pieces
 
     def _entry(self, item: SourceMapping) -> CatalogueEntry | None:
-        """Return the catalogue entry that an item uses."""
         use = item.data.get("use")
         if not isinstance(use, str):
             message = "`use` must be the id of a component" if "use" in item.data else None
@@ -398,7 +389,6 @@ class LineReader:
         return entry
 
     def _suggested(self, use: str) -> list[str]:
-        """Return up to three ids that may be meant by an unknown id."""
         from calm.files.catalogue_search import WordIndex
 
         if len(use) > LONGEST_TEXT:
@@ -410,7 +400,6 @@ class LineReader:
     def _definition(
         self, entry: CatalogueEntry, item: SourceMapping, item_keys: frozenset[str]
     ) -> Component | Assembly | None:
-        """Return the definition that an item uses, with the overrides of the item."""
         if entry.id not in self._defined:
             own = entry.section.into(self._problems)
             self._defined[entry.id] = self._define(entry, own)
@@ -458,10 +447,7 @@ class LineReader:
         definition: Component | Outline,
         component: Component,
     ) -> None:
-        """Record overrides that make the check more lenient.
-
-        Such overrides allow a component more load, depth or buoyancy, or less weight or drag.
-        """
+        """Record overrides that permit more load, depth or buoyancy, or less weight or drag."""
         loads = () if isinstance(component, Anchor) else LENIENT_IF_LESS
         sourced = item.data.get("sources")
         for key in (*LENIENT_IF_GREATER, *loads):
@@ -509,7 +495,6 @@ class LineReader:
             return None
 
     def _named(self, item: SourceMapping) -> str:
-        """Return the label given for an item or a clamp, or ""."""
         return self._label(item) if "label" in item.data else ""
 
     def _label(self, item: SourceMapping) -> str:
@@ -520,8 +505,6 @@ class LineReader:
 
 
 def _with_figure(piece: Piece, key: str, value: float, source: str | None) -> Piece:
-    """Set a value of a piece and of its clamps, if they need the value but lack it."""
-
     def filled(part: _Part) -> _Part:
         component: Component = part.component
         if not _lacks(component, key, clamped=isinstance(part, Clamp)):
@@ -535,7 +518,6 @@ def _with_figure(piece: Piece, key: str, value: float, source: str | None) -> Pi
 
 
 def _lacks(component: Component, key: str, *, clamped: bool) -> bool:
-    """True if a component lacks a value that it needs in its position."""
     if key in ("working_load", "breaking_load"):
         return not clamped and component.working_load is component.breaking_load is None
     if key == "grip":

@@ -82,16 +82,22 @@ class Solver(Model):
 class MooringFile:
     """A mooring file in which all references are resolved.
 
-    `pieces` are listed from the top of a mooring to its anchor, or in a tow (if `tow` is not None)
-    from the ship to the towed body. If there are `legs`, the pieces are listed leg by leg.
-
-    `notices` are remarks for the user, for instance that a component of the user hides a component
-    of the shipped catalogue, or that levels of a measured current were discarded. `variants` are
-    the named environments before validation. `accepts` are the accepted findings of the design
-    check, and `uncertainty` is the uncertainty of the inputs. `looser` are the limits for which an
-    item of the line has a less strict value than the definition of its component. `document` is the
-    title block, `releases` are the releases with their codes, `deployed` is the deployment, and
-    `units` are the display units.
+    Attributes
+    ----------
+    tow : tow settings; None for a mooring
+    pieces : pieces from the top of a mooring to its anchor, or in a tow from the ship to the towed
+        body; with `legs`, the pieces are listed leg by leg
+    checks : limits of the design check
+    notices : remarks for the user, for instance that a component of the user hides a component of
+        the shipped catalogue, or that levels of a measured current were discarded
+    variants : named environments before validation
+    accepts : accepted findings of the design check
+    uncertainty : uncertainties of the inputs
+    looser : limits for which an item of the line has a less strict value than its component
+    document : title block
+    releases : acoustic releases with their codes
+    deployed : the deployment
+    units : display units by dimension
     """
 
     path: str
@@ -150,7 +156,7 @@ class MooringFile:
         return math.tan(math.atan(friction) - math.radians(seabed.slope))
 
     def leg_alone(self, leg: FileLeg) -> MooringFile:
-        """Return a copy of the file with a single leg; piece indices start at the leg's upper end.
+        """Return a copy of the file with a single leg, whose first piece has the index 0.
 
         A leg without an anchor gets a substitute anchor with the id `STAND_IN`.
         """

@@ -114,8 +114,6 @@ def read_mooring(
 
 
 class _ReadLine(NamedTuple):
-    """Pieces of the line and the keys that refer to pieces, with notices and mistakes."""
-
     pieces: tuple[Piece, ...]
     legs: tuple[FileLeg, ...]
     looser: tuple[LimitKey, ...]
@@ -181,7 +179,7 @@ class MooringReader:
         section = chosen[0] if chosen else _child(top, "environment")
         in_air = section is not None and section.data.get("fluid") == "air"
         if in_air not in self._lines:
-            self._lines[in_air] = self._line(in_air)
+            self._lines[in_air] = self._read_line(in_air)
         line = self._lines[in_air]
         problems += line.problems
         notices = [*line.notices]
@@ -192,7 +190,9 @@ class MooringReader:
         if surroundings is not None:
             depth = surroundings.depth
             if surroundings.seabed is not None:
-                _check_slides(surroundings.seabed, line.pieces, line.legs, checks, top, depth)
+                _check_anchor_positions(
+                    surroundings.seabed, line.pieces, line.legs, checks, top, depth
+                )
             if self._legged:
                 check_held_depths(line.legs, top, depth)
             else:
@@ -221,8 +221,7 @@ class MooringReader:
             units=keys.units.chosen if keys.units else {},
         )
 
-    def _line(self, in_air: bool) -> _ReadLine:
-        """Read the line, for use in air or in water, and the keys that refer to pieces."""
+    def _read_line(self, in_air: bool) -> _ReadLine:
         problems: list[Problem] = []
         notices: list[str] = []
         top, keys, towed = self._top.into(problems), self._keys, self._towed
@@ -260,8 +259,8 @@ def _child(section: SourceMapping, key: str) -> SourceMapping | None:
 
 
 def _in_order(problems: list[Problem], path: str) -> list[Problem]:
-    """Remove repeated problems and sort the others, with those in the mooring file first."""
     once = dict.fromkeys(problems)
+    # problems of the mooring file come first
     return sorted(once, key=lambda one: (one.path != path, one.path, one.line, one.column))
 
 
@@ -273,7 +272,6 @@ def _check_tow(pieces: Sequence[Piece], top: SourceMapping) -> None:
 
 
 def _check_anchor(pieces: Sequence[Piece], top: SourceMapping) -> None:
-    """Check that a mooring line ends with an anchor and contains no other anchor."""
     if not pieces:
         return
     for piece in pieces[:-1]:
@@ -296,7 +294,7 @@ def _anchored(pieces: Sequence[Piece]) -> bool:
     return any(isinstance(piece.component, Anchor) for piece in pieces)
 
 
-def _check_slides(
+def _check_anchor_positions(
     seabed: Seabed,
     pieces: Sequence[Piece],
     legs: Sequence[FileLeg],
@@ -304,10 +302,9 @@ def _check_slides(
     top: SourceMapping,
     depth: float | None,
 ) -> None:
-    """Check the position of each anchor on the seabed.
+    """Check that no anchor slides downhill, lies outside the depth grid, or is above water.
 
-    No anchor may slide down the slope, lie outside the depth grid, or be above the water. `depth`
-    is the water depth at the origin [m].
+    `depth` is the water depth at the origin [m].
     """
     ends = {leg.end - 1: leg.bottom.anchor for leg in legs}
     for piece in pieces:
@@ -349,7 +346,7 @@ class EnvironmentFileKeys(Model):
 def choose_environment(
     top: SourceMapping, chosen: str | Path | None, *, towed: bool
 ) -> tuple[SourceMapping, str | None] | None:
-    """Select an environment; return its section before validation, and its name.
+    """Select an environment, and return its unvalidated section and its name.
 
     A variant or environment file is based on the default environment of the mooring file. The other
     environments in the mooring file are checked here, so that all mistakes are reported. Return
@@ -373,10 +370,10 @@ def choose_environment(
     known = {} if variants is None else {key: _child(variants, key) for key in variants.data}
     overlays = {key: overlay for key, overlay in known.items() if overlay is not None}
     for overlay in overlays.values():
-        _check(overlay, towed)
+        _check_environment(overlay, towed)
     if chosen is None:
         return own, None
-    _check(own, towed)
+    _check_environment(own, towed)
     if isinstance(chosen, str) and chosen in overlays:
         return overlays[chosen].over(own), chosen
     if isinstance(chosen, str) and not _is_file_name(chosen):
@@ -400,11 +397,8 @@ def choose_environment(
     return None if keys is None else (file.child("environment").over(own), keys.name or path.stem)
 
 
-def _check(section: SourceMapping, towed: bool) -> None:
-    """Check an environment that may have a base or be a base.
-
-    Its water depth may therefore be missing.
-    """
+def _check_environment(section: SourceMapping, towed: bool) -> None:
+    # the depth may be missing, since the environment may have a base or be a base
     section = section.over(section.holding({"depth": "1 m"}))
     read_environment(section, None, [], open_files=False, towed=towed)
 

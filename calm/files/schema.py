@@ -89,10 +89,7 @@ def _words_of(form: Schema) -> Schema:
 
 
 def _fields(kinds: Iterable[type[Component]], schemas: Schema) -> Schema:
-    """Return the schema of all fields that can be overridden.
-
-    A field that differs between kinds of components allows all its forms.
-    """
+    """Merge the fields of all kinds; a field that differs between kinds allows all its forms."""
     forms: dict[str, list[Schema]] = {}
     words: dict[str, Schema] = {}
     for kind in kinds:
@@ -112,14 +109,13 @@ def _fields(kinds: Iterable[type[Component]], schemas: Schema) -> Schema:
 
 
 def _tidy(schema: Any) -> None:
-    """Remove the titles of fields, and their defaults, which are in SI units."""
     if isinstance(schema, list):
         for part in schema:
             _tidy(part)
     if isinstance(schema, dict):
         for field in schema.get("properties", {}).values():
             field.pop("title", None)
-            field.pop("default", None)
+            field.pop("default", None)  # defaults are in SI units
         for name, part in schema.items():
             if name != "examples":
                 _tidy(part)

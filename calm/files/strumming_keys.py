@@ -95,13 +95,11 @@ _FORMS: Mapping[str, type[Model]] = {
 
 
 def _forms_in(value: dict[str, object]) -> list[str]:
-    """Return the keys of `_FORMS` in a mapping, including misspelt keys."""
     exact = [form for form in _FORMS if form in value]
     return exact or [form for key in value if (form := nearest(key, _FORMS))]
 
 
 def _written_out(value: object, info: ValidationInfo) -> object:
-    """Convert the name of a model to the model; check that a mapping is one of the forms."""
     if value is None:
         raise QuantityError("has no value")
     law = value.get("model") if isinstance(value, dict) else value
@@ -140,8 +138,8 @@ def _one_form(value: dict[str, object]) -> dict[str, object]:
 
 
 def _form(value: object) -> str:
-    """Return the name of the model class that validates a value; messages find the keys by it."""
     if isinstance(value, dict):
+        # messages about mistakes find the keys by the name of the class
         return _FORMS[_forms_in(value)[0]].__name__
     return type(value).__name__
 
@@ -158,4 +156,4 @@ Strumming = Annotated[
         json_schema_input_type=_Name | StrummingFactor | ConstantCn | BourgetMarichalKeys,
     ),
 ]
-"""Type of the field; None means no strumming."""
+"""Type of the key `strumming:`; None means no strumming."""

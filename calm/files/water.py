@@ -179,7 +179,6 @@ def density_doubts(
 
 
 def _sea_water_notices(water: profile_tables.SeaWater) -> Iterator[str]:
-    """Yield notices about temperatures and salinities that are implausible together."""
     warm, salt = water.temperature.value, water.salinity.value
     if max(salt) < _RATIO:
         yield (
@@ -199,7 +198,6 @@ def _sea_water_notices(water: profile_tables.SeaWater) -> Iterator[str]:
 
 
 def _falls(table: profile_tables.DepthTable) -> Iterator[str]:
-    """Yield a notice if the density decreases with depth."""
     greatest, depth = table.value[0], table.depth[0]
     for below, value in zip(table.depth, table.value, strict=True):
         if value < greatest - _FALL:

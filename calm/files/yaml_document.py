@@ -256,7 +256,7 @@ def _explain(
 def _existing(data: Any, loc: tuple[int | str, ...]) -> tuple[Location, Any]:
     """Return the part of a location that exists in the data, and the value there.
 
-    Locations of pydantic also contain tags of unions, which the result omits.
+    A location of pydantic also contains tags of unions, which are omitted.
     """
     location: list[str | int] = []
     for part in loc:
@@ -338,7 +338,6 @@ _SHAPES: Mapping[str, str] = {
 
 
 def _example(model: type[BaseModel], loc: tuple[int | str, ...]) -> str:
-    """Return an example for a key whose value is a mapping or list, if its schema has one."""
     field = model.model_fields.get(str(loc[0])) if loc else None
     inside = {key for one in _models_in(field and field.annotation) for key in one.model_fields}
     if loc[1:] and (len(loc) > 2 or loc[1] in inside or isinstance(loc[1], int)):

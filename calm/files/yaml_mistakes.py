@@ -113,7 +113,6 @@ def _without_colon(lines: list[str], number: int) -> Mistake:
 
 
 def _above(lines: list[str], number: int) -> int | None:
-    """Return the number of the nearest line above that is not empty; None if there is none."""
     return next((each for each in reversed(range(number)) if _content(lines[each])), None)
 
 
@@ -122,7 +121,6 @@ def _indent(line: str) -> int:
 
 
 def _content(line: str) -> str:
-    """Return the content of a line, without indentation, list dash and comment."""
     return re.sub(r"(?:^|\s)#.*", "", line).strip().removeprefix("- ").strip()
 
 

@@ -48,7 +48,7 @@ class Page:
                 new = nested(location[depth:], value)
                 if node.kind == "mapping" and (node.keys or outer is None or not depth):
                     name, new_value = next(iter(new.items()))
-                    opened = _opens(location[:depth], node)
+                    opened = _writes_one_key_per_line(location[:depth], node)
                     return [self._add_entry(node, name, new_value, open=opened)]
                 if outer is None or node.kind == "sequence":
                     raise EditError(
@@ -58,7 +58,9 @@ class Page:
                 return self._set(outer, location[depth - 1], new)
             outer, node = node, child
         assert outer is not None
-        return self._set(outer, location[-1], value, open=_opens(location[:-1], outer))
+        return self._set(
+            outer, location[-1], value, open=_writes_one_key_per_line(location[:-1], outer)
+        )
 
     def _set(
         self, outer: Node, step: str | int, value: Value, *, open: bool = False
@@ -181,8 +183,7 @@ class Page:
         return [items.patch()]
 
 
-def _opens(location: Location, node: Node) -> bool:
-    """True if a new definition in a section is to be written with one key per line."""
+def _writes_one_key_per_line(location: Location, node: Node) -> bool:
     if location not in [(name,) for name in NAMED]:
         return False
     return not node.children or any(child.style == "block" for child in node.children)
@@ -279,10 +280,9 @@ def lines_of(text: str) -> list[EndedLine]:
 
 
 def retyped(text: str, lines: Sequence[str]) -> str:
-    """Replace the lines of a text with lines from a text editor, which have no line breaks.
+    """Replace the content of a text with `lines` from a text editor; keep the line breaks.
 
-    Unchanged and replaced lines keep the line breaks of the text. An added line gets the usual
-    line break of the text.
+    The `lines` contain no line breaks. An added line gets the usual line break of the text.
     """
     old = lines_of(text)
     usual = WritingStyle.of(text, None).line_break
@@ -298,7 +298,7 @@ def retyped(text: str, lines: Sequence[str]) -> str:
 
 
 def _taken_from(old: Sequence[str], new: Sequence[str]) -> list[int | None]:
-    """Return for each new line the index of the old line that it equals or replaces.
+    """Return, for each new line, the index of the old line that it equals or replaces.
 
     The index is None for an added line.
     """

@@ -20,7 +20,7 @@ from calm.files.yaml_document import Location
 
 DEFAULT_ENVIRONMENT = "environment"
 VARIANTS = "environments"
-"""Sections that are kept even if they are empty."""
+"""Section of the named environments, each of which is kept even if it is empty."""
 
 _CONTROL = "a control character cannot be written into the file"
 _LAYOUT_PREVENTS = "the layout of the file does not allow this change; make it in the text"
@@ -105,7 +105,7 @@ class Draft:
 
     @cached_property
     def lists(self) -> LineLists:
-        """Locations of the lists of line items; line indices run through the items of all legs."""
+        """Locations of the lists of line items. A line index counts the items of all legs."""
         return LineLists.of(self._root.data if self._root is not None else None)
 
     @property
@@ -131,7 +131,7 @@ class Draft:
     def insert(
         self, index: int, values: Mapping[str, Value], rows: Location = LINE, *, above: bool = False
     ) -> Draft:
-        """Insert an item so that it gets a given index; items from that index on move down by one.
+        """Insert an item before the item that has the given index.
 
         Parameters
         ----------
@@ -141,7 +141,7 @@ class Draft:
         above : at an index between two legs, True makes the item the first of the lower leg, and
             False makes it the last of the upper leg
         """
-        self._check_item(rows)
+        self._check_clamped_item(rows)
         return self._add(*self.lists.place_in(rows, index, above=above), [values])
 
     def delete(self, indices: Iterable[int], rows: Location = LINE) -> Draft:
@@ -203,7 +203,7 @@ class Draft:
     def paste(
         self, index: int, snippets: Iterable[str], rows: Location = LINE, *, above: bool = False
     ) -> Draft:
-        """Insert items that `copy` returned; the first of them gets a given index.
+        """Insert the items that `copy` returned.
 
         Parameters
         ----------
@@ -211,8 +211,8 @@ class Draft:
         snippets : texts of the items, as returned by `copy`
         rows, above : as in `insert`
         """
-        self._check_item(rows)
-        worded = _worded(snippets)
+        self._check_clamped_item(rows)
+        worded = _parse_items(snippets)
         place = self.lists.place_in(rows, index, above=above)
         return self._add(*place, worded) if worded else self
 
@@ -253,7 +253,7 @@ class Draft:
     def put_table(
         self, location: Location, columns: Sequence[str], rows: Sequence[Sequence[str | None]]
     ) -> Draft:
-        """Replace a table of `columns` and `rows`; unchanged rows keep their text.
+        """Replace a table, but keep the text of unchanged rows.
 
         Parameters
         ----------
@@ -283,8 +283,7 @@ class Draft:
         """Define a component in this file, replacing any definition with the same id."""
         return self.put_at((changes.NAMED[0], id), values)
 
-    def _check_item(self, rows: Location) -> None:
-        """Raise EditError if a list of clamps belongs to an item that does not exist."""
+    def _check_clamped_item(self, rows: Location) -> None:
         if rows[0] == LINE[0] and rows != LINE:
             own, index = self.lists.place(int(rows[1]), above=True)
             self._page.known(own, [index])
@@ -332,8 +331,7 @@ class Draft:
         return self._page.root.data
 
 
-def _worded(snippets: Iterable[str]) -> Worded:
-    """Parse items that `Draft.copy` returned."""
+def _parse_items(snippets: Iterable[str]) -> Worded:
     wordings = [read_snippet(snippet) for snippet in snippets]
     if None in wordings:
         raise changes.EditError("the pasted text is not a list of items")

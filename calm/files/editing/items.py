@@ -27,7 +27,7 @@ _LINE_BREAK = re.compile(r"\r\n|\n")
 class LineLists:
     """Locations of the lists of line items: a single list, or one list per leg of a net.
 
-    Line indices run through the items of all lists, in file order.
+    A line index counts the items of all lists, in file order.
 
     Attributes
     ----------
@@ -263,7 +263,6 @@ def _block(text: str, node: Node, spans: list[tuple[int, int]]) -> Items | None:
 
 
 def _flow(text: str, node: Node, spans: list[tuple[int, int]]) -> Items | None:
-    """Divide a collection in brackets into items; return None if it contains comments."""
     between = [text[one[1] : other[0]] for one, other in pairwise(spans)]
     if any("#" in each for each in between):
         return None

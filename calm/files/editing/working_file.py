@@ -1,7 +1,7 @@
 """The file that a user is editing, and backup copies of its unsaved text.
 
 The first line of a copy is a comment with the host, the process, and a digest of the file when the
-work began. The text follows below. Each session uses its own file name.
+work began. The text follows below. Each session uses its own file name for the copy.
 """
 
 from __future__ import annotations
@@ -56,7 +56,8 @@ class WorkingFile:
         self._looked: Stamp | None = None
         self._differs = False
         self._places = [
-            folder / f"{stem}.{os.urandom(4).hex()}{SUFFIX}" for folder, stem in self._folders()
+            folder / f"{stem}.{os.urandom(4).hex()}{SUFFIX}"
+            for folder, stem in self._copy_folders()
         ]
         self._adopted: Path | None = None
         self._lock = RLock()  # a signal handler may use the copy while it is being removed
@@ -77,7 +78,7 @@ class WorkingFile:
         return text
 
     def save(self, text: str) -> str:
-        """Write the file. Other programs see either the old or the new text, never a part of it.
+        """Write the file. Other programs see the complete old text or the complete new text.
 
         The permissions of the file are kept. A symbolic link still points to the same file.
 
@@ -101,7 +102,7 @@ class WorkingFile:
             reason = getattr(error, "strerror", None) or error
             raise NotWritten(f"cannot write {self.path}: {reason}") from None
         self._remember(content)
-        return _lost(before, _status(target))
+        return _lost_attributes(before, _status(target))
 
     @property
     def is_protected(self) -> bool:
@@ -205,8 +206,8 @@ class WorkingFile:
         except InputError:
             return _UNREADABLE if _status(self.path) else None
 
-    def _folders(self) -> list[tuple[Path, str]]:
-        """Return folders for the backup copy, the best first, and beginnings of its file name."""
+    def _copy_folders(self) -> list[tuple[Path, str]]:
+        """Folders for the backup copy, best first, each with the beginning of the file name."""
         if self.path is None:
             return [(state_folder(), "unnamed")]
         target = Path(os.path.realpath(self.path))
@@ -216,7 +217,7 @@ class WorkingFile:
         return [(target.parent, f".{target.name}"), away]
 
     def _copies(self) -> list[KeptWork]:
-        return [each for folder in self._folders() for each in _kept_in(*folder)]
+        return [each for folder in self._copy_folders() for each in _kept_in(*folder)]
 
     def _keep(self, text: str) -> Path:
         record = json.dumps(asdict(Keeper.this()) | {"base": _digest(self._seen)})
@@ -251,8 +252,7 @@ def _replace(target: Path, content: bytes, like: os.stat_result | None) -> None:
     put(target, content, like=like, durable=True)
 
 
-def _lost(before: os.stat_result | None, after: os.stat_result | None) -> str:
-    """Return a message about file attributes that were lost in replacing the file."""
+def _lost_attributes(before: os.stat_result | None, after: os.stat_result | None) -> str:
     if before is None or after is None:
         return ""
     losses = []
@@ -283,7 +283,7 @@ class Keeper:
     ----------
     host : name of the machine
     process : process number
-    started : start time of the process in units of that machine; empty if unknown
+    started : start time of the process in ticks since boot; empty if unknown
     """
 
     host: str
@@ -293,7 +293,7 @@ class Keeper:
     @classmethod
     def this(cls) -> Keeper:
         """Return the current process."""
-        return cls(socket.gethostname(), os.getpid(), _started(os.getpid()))
+        return cls(socket.gethostname(), os.getpid(), _start_ticks(os.getpid()))
 
     @property
     def is_here(self) -> bool:
@@ -315,7 +315,7 @@ class Keeper:
         except OSError:
             pass  # the process belongs to another user
         # process numbers are reused; in a container, this happens after a short time
-        return self.started == _started(self.process)
+        return self.started == _start_ticks(self.process)
 
 
 @dataclass(frozen=True)
@@ -343,7 +343,6 @@ def _digest(content: bytes | None) -> str:
 
 
 def _kept_in(folder: Path, stem: str) -> Iterator[KeptWork]:
-    """Yield the backup copies of a file in a folder."""
     with contextlib.suppress(OSError):
         for place in sorted(folder.iterdir()):
             ends = place.name.removeprefix(stem)
@@ -364,16 +363,13 @@ def _read(place: Path) -> KeptWork:
     return KeptWork(place, text, keeper, str(record["base"]), status.st_mtime)
 
 
-def _started(process: int) -> str:
-    """Return the start time of a process in ticks since the machine was booted.
-
-    The result is empty if the start time is unknown or the process has ended, even if the parent
-    process has not yet collected the exit status.
-    """
+def _start_ticks(process: int) -> str:
+    """Start time of a process in ticks since boot; empty if unknown or if the process has ended."""
     try:
         stat = Path(f"/proc/{process}/stat").read_text()
     except (OSError, ValueError):
         return ""
     # after the name, which is in brackets and may contain anything
     values = stat.rpartition(")")[2].split()
+    # Z or X: the process has ended, although its parent may not have collected the exit status
     return "" if values[0] in "ZX" else values[19]

@@ -210,7 +210,7 @@ def place_of(name: str, names: Sequence[str]) -> int:
 
 
 def _is_deep(value: Mapping[str, Value]) -> bool:
-    """True if a mapping contains more than texts and lists of texts."""
+    """True if a value of the mapping is a mapping, or a list of anything but texts."""
     return any(
         isinstance(one, Mapping)
         or (one is not None and not isinstance(one, str) and any(map(_is_long, one)))
@@ -223,7 +223,7 @@ def _is_long(value: Value) -> bool:
 
 
 def _below_keys(node: Node) -> Iterator[tuple[Node, Node]]:
-    """Yield each block collection below a key, preceded by the mapping that has the key."""
+    """Yield (mapping, collection) for each block collection that is a value of a mapping."""
     for child in node.children:
         if child.style == "block":
             if node.kind == "mapping":
@@ -269,7 +269,7 @@ class Patch(NamedTuple):
 
 
 def patched(text: str, patches: Iterable[Patch]) -> str:
-    """Apply patches to a text; patches at the same position keep their given order."""
+    """Apply patches to a text. Patches at the same position are applied in the given order."""
     pieces: list[str] = []
     done = 0
     for patch in sorted(patches, key=lambda one: one[:2]):
@@ -298,7 +298,7 @@ def first_on_line(text: str, place: int) -> bool:
 
 
 def own_end(text: str, place: int, column: int) -> int:
-    """Return the index at which the lines of an item end, including the comments that belong to it.
+    """Return the index at which an item ends, including the comments that belong to the item.
 
     Parameters
     ----------
@@ -316,7 +316,7 @@ def own_end(text: str, place: int, column: int) -> int:
 
 
 def own_start(text: str, place: int, least: int, column: int | None = None) -> int:
-    """Return the index at which the lines of an item begin, including comments that belong to it.
+    """Return the index at which an item begins, including the comments that belong to the item.
 
     Parameters
     ----------
@@ -359,7 +359,7 @@ def set_value(
     key, old = mapping.keys[at], mapping.children[at]
     if isinstance(value, str) and old.kind == "scalar" and old.data is not None:
         return [set_scalar(old, value, flow=mapping.style == "flow")]
-    colon = _colon(text, key.end)
+    colon = _after_colon(text, key.end)
     if mapping.style == "flow":
         head, below = " " + inline(value), ""
         if colon is None:
@@ -391,7 +391,6 @@ def set_scalar(old: Node, value: str, *, flow: bool) -> Patch:
     return Patch(old.start, old.end, written(value, flow=flow, quote=quote))
 
 
-def _colon(text: str, place: int) -> int | None:
-    """Return the index after the colon of a key that ends at `place`; None if there is no colon."""
+def _after_colon(text: str, place: int) -> int | None:
     found = re.compile(r"\s*:").match(text, place)
     return found.end() if found else None
