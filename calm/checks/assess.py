@@ -135,21 +135,22 @@ def assessment_of(
     """
     in_environments = with_cases(in_environments)
     first = next(
-        (stand for stand in in_environments if stand.result is not None), in_environments[0]
+        (checked for checked in in_environments if checked.result is not None),
+        in_environments[0],
     )
     handling = _handled(first)
     acceptance = Acceptance.of_file(first.leg.file, day)
-    standing = [stand.leg for stand in in_environments if stand.result is not None]
-    findings = list(findings_of_currents(standing, name, acceptance)) if standing else []
-    results = [stand.result for stand in in_environments if stand.result is not None]
+    legs = [checked.leg for checked in in_environments if checked.result is not None]
+    findings = list(findings_of_currents(legs, name, acceptance)) if legs else []
+    results = [checked.result for checked in in_environments if checked.result is not None]
     findings += findings_of_drag(results, name, acceptance)
     for each in ONCE:
         verdicts = each.judge(handling)
         findings += acceptance.findings(each, verdicts, name, first.environment, each.situation)
     findings = cased(findings, in_environments)
-    lacking = [one for stand in in_environments for one in stand.lacking]
+    lacking = [one for checked in in_environments for one in checked.lacking]
     findings = with_missing((*lacking, *findings), acceptance.parts, name, first.environment)
-    if first.result is not None and not moving(stand.leg for stand in in_environments):
+    if first.result is not None and not moving(checked.leg for checked in in_environments):
         still = equilibrium.find(situations.STILL_ONLY, name, first.environment)
         findings.insert(0, still.but(case=situations.case_of(1, AS_GIVEN)))
     return Assessment(
@@ -164,7 +165,10 @@ def assessment_of(
         findings=tuple(findings),
         notices=tuple(
             acceptance.notices(
-                [*(one for stand in in_environments for one in stand.accepted), *findings]
+                [
+                    *(one for checked in in_environments for one in checked.accepted),
+                    *findings,
+                ]
             )
         ),
     )
@@ -177,7 +181,7 @@ def with_cases(in_environments: Sequence[MooringInEnvironment]) -> tuple[Mooring
     requires.
     """
     numbers = _environment_numbers(in_environments)
-    every = (one for stand in in_environments for one in (*stand.findings, *stand.tighter))
+    every = (one for checked in in_environments for one in (*checked.findings, *checked.tighter))
     weights = strength.heaviest(every)
 
     def coded(found: Iterable[Finding]) -> tuple[Finding, ...]:
@@ -193,13 +197,13 @@ def with_cases(in_environments: Sequence[MooringInEnvironment]) -> tuple[Mooring
 
     return tuple(
         replace(
-            stand,
-            findings=coded(stand.findings),
-            tighter=coded(stand.tighter),
-            accepted=coded(stand.accepted),
-            lacking=coded(stand.lacking),
+            checked,
+            findings=coded(checked.findings),
+            tighter=coded(checked.tighter),
+            accepted=coded(checked.accepted),
+            lacking=coded(checked.lacking),
         )
-        for stand in in_environments
+        for checked in in_environments
     )
 
 
@@ -225,11 +229,11 @@ def _environment_numbers(in_environments: Sequence[MooringInEnvironment]) -> dic
     The keys are the names of the environments, and the names used in `in_environments`.
     """
     numbers: dict[str, int] = {}
-    for stand in in_environments:
+    for checked in in_environments:
         number = numbers.setdefault(
-            stand.leg.file.environment.name or OWN, len({*numbers.values()}) + 1
+            checked.leg.file.environment.name or OWN, len({*numbers.values()}) + 1
         )
-        numbers.setdefault(stand.environment, number)
+        numbers.setdefault(checked.environment, number)
     return numbers
 
 
@@ -340,11 +344,11 @@ def handled(leg: Leg, result: LegResult) -> Handling:
     return Handling(leg, launch, recovery, graph.breaks(leg), graph.losses(leg), result)
 
 
-def _handled(stand: MooringInEnvironment) -> Handling:
-    leg, result = stand.leg, stand.result
+def _handled(checked: MooringInEnvironment) -> Handling:
+    leg, result = checked.leg, checked.result
     if result is not None:
         return replace(handled(leg, result), leg=estimated(leg))
-    failure = stand.situations[0].failure
+    failure = checked.situations[0].failure
     assert failure is not None
     graph = LegGraph.upright(leg)
     return Handling(leg, failure, failure, graph.breaks(leg), graph.losses(leg))
@@ -418,13 +422,16 @@ def with_probabilities(
     expect_many(samples * len(assessment.in_environments), CompiledPart.NEARBY)
     draws = draws_of(assessment.file.uncertainty, normals)
     in_environments = tuple(
-        _environment_with_probabilities(stand, draws, mapped)
-        for stand in assessment.in_environments
+        _environment_with_probabilities(checked, draws, mapped)
+        for checked in assessment.in_environments
     )
-    first = next((stand for stand in assessment.in_environments if stand.result is not None), None)
+    first = next(
+        (checked for checked in assessment.in_environments if checked.result is not None),
+        None,
+    )
     findings = assessment.findings
     if first is not None:
-        broken = _exceeding_samples(first.leg, draws[:HANDLED], mapped, standing=False)
+        broken = _exceeding_samples(first.leg, draws[:HANDLED], mapped, in_equilibrium=False)
         findings = _findings_with_probabilities(findings, broken, min(samples, HANDLED))
     return replace(
         assessment, in_environments=in_environments, findings=findings, draws=(samples, seed)
@@ -432,18 +439,18 @@ def with_probabilities(
 
 
 def _environment_with_probabilities(
-    stand: MooringInEnvironment, draws: Sequence[Draw], mapped: Mapped
+    checked: MooringInEnvironment, draws: Sequence[Draw], mapped: Mapped
 ) -> MooringInEnvironment:
-    found = [stand.findings, stand.tighter, stand.accepted]
+    found = [checked.findings, checked.tighter, checked.accepted]
     wanted = {finding.situation for each in found for finding in each}
-    for situation in stand.situations:
+    for situation in checked.situations:
         if situation.result is not None and situation.name in wanted:
             broken = _exceeding_samples(situation.result.leg, draws, mapped)
             found = [
                 _findings_with_probabilities(each, broken, len(draws), situation.name)
                 for each in found
             ]
-    return replace(stand, findings=found[0], tighter=found[1], accepted=found[2])
+    return replace(checked, findings=found[0], tighter=found[1], accepted=found[2])
 
 
 def _findings_with_probabilities(
@@ -462,21 +469,21 @@ _ALL: Key = ("", None)
 
 
 def _exceeding_samples(
-    leg: Leg, draws: Sequence[Draw], mapped: Mapped, *, standing: bool = True
+    leg: Leg, draws: Sequence[Draw], mapped: Mapped, *, in_equilibrium: bool = True
 ) -> Counter[Key]:
-    """Count the samples that exceed each limit: in equilibrium if `standing`, else during handling.
+    """Count the samples that exceed each limit, in equilibrium or otherwise during handling.
 
     Handling is launch, recovery and breaks.
     """
-    block = BLOCK if standing else BLOCK // 16
+    block = BLOCK if in_equilibrium else BLOCK // 16
     blocks = [draws[first : first + block] for first in range(0, len(draws), block)]
     broken: Counter[Key] = Counter()
-    for each in mapped(partial(_counted, standing, leg), blocks):
+    for each in mapped(partial(_counted, in_equilibrium, leg), blocks):
         broken.update(each)
     return broken
 
 
-def _counted(standing: bool, leg: Leg, draws: Sequence[Draw]) -> Counter[Key]:
+def _counted(in_equilibrium: bool, leg: Leg, draws: Sequence[Draw]) -> Counter[Key]:
     broken: Counter[Key] = Counter()
     for one in drawn(leg, draws):
         try:
@@ -484,7 +491,7 @@ def _counted(standing: bool, leg: Leg, draws: Sequence[Draw]) -> Counter[Key]:
         except NoEquilibrium:
             broken[_ALL] += 1
         else:
-            if standing:
+            if in_equilibrium:
                 broken.update(_exceeded_limits(STANDING, result))
             else:
                 broken.update(_exceeded_limits(ONCE, handled(one, result)))

@@ -132,8 +132,8 @@ class Assessment:
 
     def all_findings(self) -> Iterator[Finding]:
         """Yield the findings in all environments, and then `findings`."""
-        for stand in self.in_environments:
-            yield from stand.findings
+        for checked in self.in_environments:
+            yield from checked.findings
         yield from self.findings
 
     @property
@@ -161,15 +161,18 @@ class Assessment:
 
     def accepted_findings(self) -> list[Finding]:
         """Return for each rule and component the accepted finding with the largest utilisation."""
-        every = (*(one for stand in self.in_environments for one in stand.accepted), *self.findings)
+        every = (
+            *(one for checked in self.in_environments for one in checked.accepted),
+            *self.findings,
+        )
         accepted = (one for one in every if one.accept is not None)
         found = grouped_by(accepted, lambda one: (one.rule, one.component))
         return [governing(each) for each in found.values()]
 
     def tighter_findings(self) -> Iterator[Finding]:
         """Yield the findings in `tighter` of each environment."""
-        for stand in self.in_environments:
-            yield from stand.tighter
+        for checked in self.in_environments:
+            yield from checked.tighter
 
 
 @dataclass(frozen=True)

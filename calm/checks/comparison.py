@@ -121,8 +121,10 @@ def _solved(design: Design) -> _Solved:
 
 def _figures_of(design: _Solved) -> _Figures:
     result, assessment = design
-    stands = not isinstance(result, NoEquilibrium)
-    found: _Figures = {"status": ("status", "", "stands" if stands else "has no equilibrium")}
+    solved = not isinstance(result, NoEquilibrium)
+    found: _Figures = {
+        "status": ("status", "", "in equilibrium" if solved else "has no equilibrium")
+    }
     if not isinstance(result, NoEquilibrium):
         found |= _figures_of_legs(result) if result.several else _figures_of_leg(result.leg)
         greatest = max(row.tension for row in result.components)

@@ -61,7 +61,9 @@ def check(*designs: Design, day: date | None = None) -> Assessment:
         refuse_tow(each.file)
     name = designs[0].file.name
     expect_many(situations.SOLVES * len(designs))
-    in_environments = [stand for each in designs for stand in environments_checked(each, name, day)]
+    in_environments = [
+        checked for each in designs for checked in environments_checked(each, name, day)
+    ]
     return assessment_of(name, in_environments, day)
 
 
@@ -117,10 +119,10 @@ def assessment_of(
         return assess.assessment_of(name, in_environments, day)
     in_environments = assess.with_cases(in_environments)
     own: dict[str, MooringInEnvironment] = {}
-    for stand in in_environments:
-        if stand.result is not None:
-            own.setdefault(stand.leg.name, stand)
-    found = [stand.result for stand in own.values() if stand.result is not None]
+    for checked in in_environments:
+        if checked.result is not None:
+            own.setdefault(checked.leg.name, checked)
+    found = [checked.result for checked in own.values() if checked.result is not None]
     legs = [each.leg for each in found] or [in_environments[0].leg]
     whole = _joined_legs(legs, any(each.type == "surface" for each in found))
     acceptance = assessment.Acceptance.of_file(whole.file, day)
@@ -132,27 +134,30 @@ def assessment_of(
     if graph.anchored:
         once.append((release_present, graph.release_verdicts(), first))
         once.append((backup, backup.judge(handling), first))
-    for stand in own.values():
-        alone = Handling(estimated(stand.leg), _NOT_SOLVED, _NOT_SOLVED, ())
-        once += [(each, each.judge(alone), stand.environment)
+    for checked in own.values():
+        alone = Handling(estimated(checked.leg), _NOT_SOLVED, _NOT_SOLVED, ())
+        once += [(each, each.judge(alone), checked.environment)
                  for each in (joints, swivel, clamp_place, metals)]  # fmt: skip
     for result in [each for each in found if planned_parts(each)] or found[:1]:
         alone = Handling(estimated(result.leg), _NOT_SOLVED, _NOT_SOLVED, (), result=result)
         once.append((planned_depth, planned_depth.judge(alone), first))
-    waters = {stand.leg.file.environment.name: stand.leg for stand in in_environments}
+    waters = {checked.leg.file.environment.name: checked.leg for checked in in_environments}
     findings = list(assess.findings_of_currents(list(waters.values()), name, acceptance))
     findings += assess.findings_of_drag(found, name, acceptance)
     for rule, verdicts, environment in once:
         findings += acceptance.findings(rule, verdicts, name, environment)
     findings = assess.cased(findings, in_environments)
-    lacking = [one for stand in in_environments for one in stand.lacking]
+    lacking = [one for checked in in_environments for one in checked.lacking]
     findings = with_missing((*lacking, *findings), acceptance.parts, name, first)
     fast = (float(np.hypot(each.water.u, each.water.v).max()) for each in waters.values())
     if found and max(fast) < situations.LEAST_CURRENT:
         still = situations.equilibrium.find(situations.STILL_ONLY, name, first)
         findings.insert(0, still.but(case=situations.case_of(1, AS_GIVEN)))
     surface = bool(whole.for_surface)
-    accepted = [*(one for stand in in_environments for one in stand.accepted), *findings]
+    accepted = [
+        *(one for checked in in_environments for one in checked.accepted),
+        *findings,
+    ]
     return Assessment(
         name=name,
         in_environments=tuple(in_environments),

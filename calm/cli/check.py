@@ -285,7 +285,7 @@ def _answer(
 def _code(assessment: Assessment, allow_unknown: bool) -> ExitCode:
     from calm.checks.finding import Conclusion
 
-    if any(stand.result is None for stand in assessment.in_environments):
+    if any(checked.result is None for checked in assessment.in_environments):
         return ExitCode.NO_EQUILIBRIUM
     stops = {Conclusion.FAILS} | ({Conclusion.INCOMPLETE} if not allow_unknown else set())
     return ExitCode.FINDING if assessment.verdict in stops else ExitCode.DONE

@@ -81,7 +81,7 @@ class Differences:
 
     @property
     def any(self) -> bool:
-        """Whether the files differ in any way."""
+        """Whether the files differ in any key."""
         return bool(self.changed or self.moved or self.removed or self.added)
 
 
@@ -331,12 +331,12 @@ def align(before: Sequence[Known], after: Sequence[Known]) -> Alignment:
     in_order = _longest_rise([pairs[i] for i in sorted(pairs)])
     fixed = [(-1, -1), *((i, pairs[i]) for i in sorted(pairs) if pairs[i] in in_order)]
     taken = set(pairs.values())
-    ways = min((len(part.contents) for part in (*before, *after)), default=0)
+    kinds_of_key = min((len(part.contents) for part in (*before, *after)), default=0)
     for (i, j), (k, m) in pairwise((*fixed, (len(before), len(after)))):
         left = [n for n in range(i + 1, k) if n not in pairs]
         right = [n for n in range(j + 1, m) if n not in taken]
-        for way in range(ways):
-            _pair_between(before, after, left, right, way, pairs)
+        for key in range(kinds_of_key):
+            _pair_between(before, after, left, right, key, pairs)
     removed = [i for i in range(len(before)) if i not in pairs]
     added = sorted(set(range(len(after))) - set(pairs.values()))
     for i in removed.copy():
@@ -363,17 +363,17 @@ def _pair_between(
     after: Sequence[Known],
     left: list[int],
     right: list[int],
-    way: int,
+    key: int,
     pairs: dict[int, int],
 ) -> None:
     """Match the parts with equal keys, in order, between two parts that are already matched.
 
-    Matches are added to `pairs`, and removed from `left` and `right`. `way` is the index of the
+    Matches are added to `pairs`, and removed from `left` and `right`. `key` is the index of the
     key.
     """
     if not left or not right:
         return
-    keys = [before[i].contents[way] for i in left], [after[j].contents[way] for j in right]
+    keys = [before[i].contents[key] for i in left], [after[j].contents[key] for j in right]
     found = {
         left[block.a + n]: right[block.b + n]
         for block in SequenceMatcher(None, *keys, autojunk=False).get_matching_blocks()

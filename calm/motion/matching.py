@@ -75,9 +75,9 @@ class Clock:
     @property
     def sentence(self) -> str:
         """Sentence that describes the clock error."""
-        way = "behind" if self.late > 0.0 else "ahead"
+        sign = "behind" if self.late > 0.0 else "ahead"
         when = np.datetime_as_string(self.checked, "m")
-        return f"its clock was {abs(self.late):g} s {way} at {when}; its times were corrected"
+        return f"its clock was {abs(self.late):g} s {sign} at {when}; its times were corrected"
 
 
 def clocks_of(mooring: Design, first: np.datetime64) -> dict[str, Clock]:
@@ -101,7 +101,7 @@ def clocks_of(mooring: Design, first: np.datetime64) -> dict[str, Clock]:
     return found
 
 
-def hung_currents(
+def currents_on_line(
     one: CurrentMeasurements, path: Path, line: LinePlaces, seabed: float
 ) -> tuple[CurrentMeasurements, list[str]]:
     """Match the instruments of a current file to the line by serial number or nominal depth.
@@ -128,8 +128,8 @@ def hung_currents(
     except UsageError:
         return one, []
     label = tuple(line.label[points[i]] if i in points else "" for i in range(levels))
-    hung = np.array([bool(each) for each in label])
-    moved = replace(one, label=label, depth=np.where(hung, np.nan, one.depth))
+    on_line = np.array([bool(each) for each in label])
+    moved = replace(one, label=label, depth=np.where(on_line, np.nan, one.depth))
     named = ", ".join(filter(None, label))
     return moved, [
         *sentences,
@@ -262,7 +262,7 @@ def in_order(
         row, may_be = best[1][differs], "more than one part of the line"
         if few is one:
             row = differs
-            may_be = " or ".join(f"`{line.label[down[way[1][row]]]}`" for way in (best, second))
+            may_be = " or ".join(f"`{line.label[down[match[1][row]]]}`" for match in (best, second))
         raise UsageError(
             f"{series[rows[row]].named}, with a nominal depth of {one[row]:.0f} m, could be "
             f"{may_be}: its file gives no label or serial number that is in the mooring file. Set "

@@ -562,9 +562,9 @@ class CurrentSmoother:
         step = now[:, at.current] - moving
         self.state = now
         on_line = one.level_point != FREE
-        hung = there + np.einsum("npq,nq->np", slope[:, :, at.current], step)
-        hung = hung[:, one.level_point[on_line]]
-        self.levels[:, on_line] = np.where(np.isfinite(hung), hung, self.levels[:, on_line])
+        moved = there + np.einsum("npq,nq->np", slope[:, :, at.current], step)
+        moved = moved[:, one.level_point[on_line]]
+        self.levels[:, on_line] = np.where(np.isfinite(moved), moved, self.levels[:, on_line])
         self.knot_depth = self.knots.at(self.levels)
         self._there = there = self.depths(now[:, at.current], self.factor, slice(None))
         down = np.maximum(there - self.still, 1.0)

@@ -266,9 +266,12 @@ def joined(
         tide = np.nan_to_num(tide - np.nanmean(tide))
     when = [one.time[one.false] for one in currents if one.false is not None]
     false = np.isin(time, np.concatenate(when)) if when else None
-    hung, names = np.array([c[1] for c in columns], np.int64), [labels[at] for at in point.tolist()]
+    parts, names = (
+        np.array([c[1] for c in columns], np.int64),
+        [labels[at] for at in point.tolist()],
+    )
     measured = MooringMeasurements(
-        time, tuple(names), point, depth, level, hung, u, v, flag.astype(np.int8), tide, false
+        time, tuple(names), point, depth, level, parts, u, v, flag.astype(np.int8), tide, false
     )
     both = (np.isfinite(u) & np.isfinite(v)).any(axis=1) & np.isfinite(depth).any(axis=1)
     if currents and not both.any():

@@ -153,7 +153,7 @@ class RecoveredMooring:
             mooring.file.environment.maximum_speed,
         )  # fmt: skip
         for i, text in enumerate(self.currents):
-            read[i], more = matching.hung_currents(read[i], split_label(text)[1], line, seabed)
+            read[i], more = matching.currents_on_line(read[i], split_label(text)[1], line, seabed)
             notes += more
         notes += dict.fromkeys(f"{one.source}: {one.note}" for one in given if one.note)
         self.cards = [*(card for one in read for card in one.cards), *of_files.values()]

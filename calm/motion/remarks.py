@@ -95,7 +95,7 @@ class Fault:
         """Describe the fault in a sentence, with its alternative explanations."""
         band = f"({self.low:+.2f} to {self.high:+.2f})"
         clock = "their clocks are" if self.label == ALL else "its clock is"
-        way = "late" if self.value > 0.0 else "early"
+        sign = "late" if self.value > 0.0 else "early"
         when, until = (np.datetime_as_string(one, "m") for one in (self.since, self.until))
         below = "below" if self.value > 0.0 else "above"
         share = f"{self.value:.2f} ({self.low:.2f} to {self.high:.2f})"
@@ -116,7 +116,7 @@ class Fault:
             "moved": f"the whole mooring is {abs(self.value):.1f} m {band} "
             f"{'deeper' if self.value > 0.0 else 'shallower'} from {when} on; it has probably "
             "moved to another water depth",
-            "clock": f"{clock} {abs(self.value):.2f} h {way} {band}"
+            "clock": f"{clock} {abs(self.value):.2f} h {sign} {band}"
             + f", or the clocks of the current meters are {'early' if self.value > 0.0 else 'late'}"
             * (self.label == ALL),
             "gain": (

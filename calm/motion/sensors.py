@@ -325,7 +325,7 @@ def metre_notes(measured: Floats, expected: Floats, latitude: float) -> list[str
     off = measured - expected
     if len(off) < 2 or not rms(off) > LEAST:
         return []
-    for true, way, cause in (
+    for true, sign, cause in (
         (pressure_at(measured, latitude), "low", "depths in metres recorded as dbar"),
         (depth_of(measured, latitude), "high", "pressures in dbar recorded as depths in metres"),
     ):
@@ -333,7 +333,7 @@ def metre_notes(measured: Floats, expected: Floats, latitude: float) -> list[str
         if left <= min(EXPLAINED * rms(off), BEYOND * float(off.std())):
             share = 100.0 * float(np.abs(measured / true - 1.0).mean())
             return [
-                f"all sensors: their readings are {share:.1f} % {way}, as {cause} would be; they "
+                f"all sensors: their readings are {share:.1f} % {sign}, as {cause} would be; they "
                 "are used as they are"
             ]
     return []

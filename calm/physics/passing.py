@@ -225,29 +225,29 @@ def pass_cable(
                 passed = touchdown(
                     cable, knots, vibration, sea, state, part, halves, near, expected, how.bed
                 )
-            hung, middle, upper, below, strain = passed
+            passed_length, middle, upper, below, strain = passed
             x, y, z, fx, fy, fz, tz, level_index = below
             if strain == NO_BALANCE:
                 return below, hanging, used, nodes, SEGMENT_UNBALANCED
             if not isfinite(x + y + z + fx + fy + fz):
                 return below, hanging, used, nodes, RUNS_OFF
-            way = 0.5 * hung if halves else hung
-            if way > SHORT * how.reach:
+            span = 0.5 * passed_length if halves else passed_length
+            if span > SHORT * how.reach:
                 _, _, _, ax, ay, az, _, _ = middle
-                expected = (fx - ax) / way, (fy - ay) / way, (fz - az) / way
-            if hung < part:
+                expected = (fx - ax) / span, (fy - ay) / span, (fz - az) / span
+            if passed_length < part:
                 fx, fy, fz = along_bed(how.bed, fx, fy, fz)
                 below = x, y, z, fx, fy, fz, tz, level_index
-                hanging = done + hung
+                hanging = done + passed_length
             if how.recording and nodes + others >= len(record[0]):
                 return state, hanging, used, nodes, NO_ROOM
             if halves and (uncut or near == 0.0):
                 if how.recording:
-                    write_element(record, nodes, cable.piece, -1, way, upper)
+                    write_element(record, nodes, cable.piece, -1, span, upper)
                     write_node(record, nodes, middle)
                     record[SEGMENT][nodes] = HALVES
-                nodes, long = nodes + 1, long - way
-            state, left, done, long = below, left - part, done + part, long + hung
+                nodes, long = nodes + 1, long - span
+            state, left, done, long = below, left - part, done + part, long + passed_length
             splits = left > 0.0 and hanging < 0.0
             if splits and not how.given and part > LEAST_PART * cut:
                 cut, left, splits = cut - left, 0.0, False

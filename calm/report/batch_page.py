@@ -49,7 +49,7 @@ def summary_report(summary: Summary) -> blocks.Report:
     instruments = parts_figure(moving)
     parts: dict[str, tuple[blocks.Block, ...]] = {
         "Result": (
-            Prose((f"{batch_summary.standing(summary)}.",), lost),
+            Prose((f"{batch_summary.status_counts(summary)}.",), lost),
             batch_summary.rules_table(summary),
             *left_out,
             Prose(batch_summary.DEFINITIONS),
@@ -237,7 +237,7 @@ def summary_part(summary: Summary) -> ReportPart:
     levels follow.
     """
     lost = State.FAIL if summary.count - summary.solved else None
-    ended = blocks.Span(batch_summary.standing(summary), lost)
+    ended = blocks.Span(batch_summary.status_counts(summary), lost)
     worst = [(name, one) for name, each in summary.worst.items() for one in each[:1]]
     shown: tuple[blocks.Block, ...] = (
         blocks.Heading(summary.name),

@@ -235,7 +235,7 @@ def extent(summary: Summary) -> str:
     )
 
 
-def standing(summary: Summary) -> str:
+def status_counts(summary: Summary) -> str:
     """Format the number of profiles for each status of the solver."""
     ended = (f"{grouped(count)} {status}" for status, count in summary.statuses.items())
     return ", ".join(ended)

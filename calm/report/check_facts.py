@@ -63,11 +63,11 @@ def key_figures(assessment: Assessment) -> dict[str, Any]:
 def strongest_current(assessment: Assessment) -> StrongestCurrent:
     """Find the strongest current in all environments."""
     found = []
-    for stand in assessment.in_environments:
-        water = stand.leg.water
+    for checked in assessment.in_environments:
+        water = checked.leg.water
         level = int(np.hypot(water.u, water.v).argmax())
         speed = hypot(water.u[level], water.v[level])
-        found.append((speed, float(water.level[level]), stand.environment))
+        found.append((speed, float(water.level[level]), checked.environment))
     currents = (one for one in assessment.all_findings() if one.rule == "current")
     weak = [one.message for one in currents if one.state is State.WARN and one.limit is not None]
     return StrongestCurrent(*max(found, key=lambda each: each[0]), " ".join(weak))
@@ -76,7 +76,7 @@ def strongest_current(assessment: Assessment) -> StrongestCurrent:
 def least_factor(assessment: Assessment) -> LeastFactor | None:
     """Find the minimum safety factor over all situations; None if no piece has a breaking load."""
     found = []
-    for stand, situation in (
+    for checked, situation in (
         (one, each) for one in assessment.in_environments for each in one.situations
     ):
         if situation.result is None:
@@ -85,6 +85,6 @@ def least_factor(assessment: Assessment) -> LeastFactor | None:
         factors = np.asarray(pieces.safety_factor, np.float64)
         if not np.isnan(factors).all():
             row, unknown = int(np.nanargmin(factors)), int(np.isnan(factors[:-1]).sum())
-            at = pieces.label[row], stand.environment, situation.name
+            at = pieces.label[row], checked.environment, situation.name
             found.append(LeastFactor(float(factors[row]), *at, unknown))
     return min(found, key=lambda each: each.factor, default=None)

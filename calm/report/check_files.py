@@ -91,7 +91,7 @@ def check_document(assessments: Sequence[Assessment], *, every: bool = False) ->
     def listed(value_of: Callable[[Assessment], Iterable[Any]]) -> list[Any]:
         return [one for each in assessments for one in value_of(each)]
 
-    in_environments = [stand for each in assessments for stand in each.in_environments]
+    in_environments = [checked for each in assessments for checked in each.in_environments]
     given = by_name(lambda each: each.file.document)
     documents = {name: one.to_dict() for name, one in given.items() if one is not None}
     return {
@@ -110,9 +110,9 @@ def check_document(assessments: Sequence[Assessment], *, every: bool = False) ->
         "findings_in_all": len(listed(Assessment.every_finding)),
         "situations": by_name(
             lambda each: [
-                {"environment": stand.environment, **_situation_document(situation)}
-                for stand in each.in_environments
-                for situation in stand.situations
+                {"environment": checked.environment, **_situation_document(situation)}
+                for checked in each.in_environments
+                for situation in checked.situations
             ]
         ),
         "launch": by_name(lambda each: _handling_document(each.launch, _OF_LAUNCH)),
@@ -169,9 +169,13 @@ _OF_RECOVERY = ("released", "rise_speed", "time_to_surface", "net_buoyancy", "or
 
 
 def _handling_document(
-    way: Launch | Recovery | None, names: Sequence[str]
+    handling: Launch | Recovery | None, names: Sequence[str]
 ) -> dict[str, Any] | None:
-    return None if way is None else members(way, *names) | {"components": way.components()}
+    return (
+        None
+        if handling is None
+        else members(handling, *names) | {"components": handling.components()}
+    )
 
 
 _OF_FINDING = ("mooring", "environment", "situation", "case", "rule", "component")

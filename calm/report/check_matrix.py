@@ -94,10 +94,10 @@ def summary_row(assessment: Assessment) -> SummaryRow:
     """Create the summary row of a mooring."""
     groups: dict[str, list[Finding]] = {}
     lacking = set()
-    for stand in assessment.in_environments:
-        name = stand.leg.file.environment.name or "own"
-        groups.setdefault(name, []).extend((*stand.findings, *stand.tighter))
-        if stand.lacking:
+    for checked in assessment.in_environments:
+        name = checked.leg.file.environment.name or "own"
+        groups.setdefault(name, []).extend((*checked.findings, *checked.tighter))
+        if checked.lacking:
             lacking.add(name)
     cells = {name: _cell(found, name in lacking) for name, found in groups.items()}
     handling = [one for one in assessment.findings if one.missing is None and one.rule != "current"]

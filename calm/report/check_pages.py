@@ -120,12 +120,12 @@ _A_DIFFERENCE = 0.1
 
 
 def _accuracy_sentences(signed: SignedMooring) -> str:
-    results = [one for case in signed.standing for one in case.results]
+    results = [one for case in signed.moored for one in case.results]
     if not results:
         return "The mooring has no equilibrium, so checks that need one were skipped."
     text = accuracy_text(results)
-    given = signed.standing[0]
-    strums = next((one for one in signed.standing if one.code == f"{given.code}s"), None)
+    given = signed.moored[0]
+    strums = next((one for one in signed.moored if one.code == f"{given.code}s"), None)
     if strums is not None and strums.knockdown - given.knockdown >= _A_DIFFERENCE:
         text += (
             f" If the cables strum (case {strums.code}), the knockdown increases from "
@@ -281,7 +281,7 @@ def _number_ranges(numbers: Iterable[str]) -> list[str]:
 
 def _inventory_table(signed: SignedMooring) -> Table:
     items = signed.assessment.inventory
-    numbers = item_numbers(*signed.standing[0].results) if signed.standing else {}
+    numbers = item_numbers(*signed.moored[0].results) if signed.moored else {}
     unit = LOAD.display_unit
 
     def length(group: Sequence[InventoryItem]) -> str | None:

@@ -76,9 +76,11 @@ def _name_and_kind(assessment: Assessment) -> Line:
     document = "" if given is None or not given.id else given.id
     if given is not None and given.id and given.revision:
         document += f" rev. {given.revision}"
-    results = [stand.result for stand in assessment.in_environments if stand.result is not None]
+    results = [
+        checked.result for checked in assessment.in_environments if checked.result is not None
+    ]
     kind = "surface" if any(one.type == "surface" for one in results) else "sub-surface"
-    if file.legs or len({stand.leg.name for stand in assessment.in_environments}) > 1:
+    if file.legs or len({checked.leg.name for checked in assessment.in_environments}) > 1:
         kind = "net of legs"
     depth = file.environment.depth
     water = "" if depth is None else f"{say('depth_rating', depth)} of water"
@@ -100,14 +102,14 @@ def _cases(assessment: Assessment) -> Iterator[blocks.Block]:
     every = load_cases(assessment)
     cases, note = shown_cases(every)
     fallen = [one for one in cases if one.failure is not None]
-    standing = [one for one in cases if one.results]
-    if standing:
+    moored = [one for one in cases if one.results]
+    if moored:
         yield blocks.table_of(
             "",
-            standing,
+            moored,
             words("", lambda one: Cell(one.code, strong=True), 0.0),
-            words("load case", lambda one: _case_text(one, standing)),
-            *case_columns(standing),
+            words("load case", lambda one: _case_text(one, moored)),
+            *case_columns(moored),
             note=note,
             dense=True,
         )

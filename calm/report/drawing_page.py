@@ -30,10 +30,10 @@ _SEA_ROW = 16.0
 
 def drawing_pages(signed: SignedMooring, page_size: str = "a4") -> Iterator[Block]:
     """Yield the drawing of the mooring from top to anchor, on one or more sheets."""
-    if not signed.standing:
+    if not signed.moored:
         return
-    numbers = item_numbers(*signed.standing[0].results)
-    for leg, result in enumerate(signed.standing[0].results):
+    numbers = item_numbers(*signed.moored[0].results)
+    for leg, result in enumerate(signed.moored[0].results):
         title = "Mooring drawing"
         if result.leg.of_several:
             title = f"Mooring drawing, leg {leg_title(result)}"
@@ -46,15 +46,15 @@ def drawing_pages(signed: SignedMooring, page_size: str = "a4") -> Iterator[Bloc
 def _sheets(
     signed: SignedMooring, leg: int, numbers: Mapping[str, str], title: str, room: float
 ) -> Iterator[Table]:
-    case = signed.standing[0]
-    changed = [one for one in signed.standing[1:] if one.code != "0"]
+    case = signed.moored[0]
+    changed = [one for one in signed.moored[1:] if one.code != "0"]
     other = max(changed, key=lambda one: one.knockdown, default=None)
-    still = next((one for one in signed.standing if one.code == "0"), None)
+    still = next((one for one in signed.moored if one.code == "0"), None)
     chosen = (still if still is not case else None, case, other)
     cases = [one for one in chosen if one is not None and len(one.results) > leg]
     weights = {one.label: one.wet_weight for one in signed.assessment.inventory}
     tension: dict[str, float] = {}
-    for one in signed.standing:
+    for one in signed.moored:
         for label, row in one.rows.items():
             tension[label] = max(tension.get(label, 0.0), row.tension)
     depth = QUANTITIES["depth"].format

@@ -26,17 +26,17 @@ from calm.report.page_one import SignedMooring
 
 def line_page(signed: SignedMooring) -> Iterator[Block]:
     """Yield tables of the loads on the main line, on each type of hardware, and on the anchor."""
-    if not signed.standing:
+    if not signed.moored:
         return
-    loads = piece_loads(signed.assessment, signed.standing)
+    loads = piece_loads(signed.assessment, signed.moored)
     hardware = [one for one in loads if one.row.role == "connector"]
     main = [one for one in loads if one.row.role != "connector"]
     yield _loads_table(main)
     unit = LOAD.display_unit
     points = [
         PieceBar(
-            one.number, one.tension * LOAD.scale, _scaled(one.standing), _known(one.launch_tension),
-            _scaled(one.launch), one.standing is not None,
+            one.number, one.tension * LOAD.scale, _scaled(one.moored), _known(one.launch_tension),
+            _scaled(one.launch), one.moored is not None,
         )
         for one in loads
     ]  # fmt: skip
@@ -74,7 +74,7 @@ def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
             groups.append([one])
     unit = LOAD.display_unit
 
-    def standing(show: _Show) -> Callable[[Any], object]:
+    def moored(show: _Show) -> Callable[[Any], object]:
         return lambda group: show(_most_used(group))
 
     def falling(show: _Show) -> Callable[[Any], object]:
@@ -89,14 +89,14 @@ def _loads_table(loads: Sequence[PieceEnvelope]) -> Table:
         groups,
         number("No.", lambda group: run_of([str(one.number) for one in group])),
         words("Item", lambda group: together([one.row.label for one in group])),
-        number(f"Tension\n{unit}", standing(case)),
+        number(f"Tension\n{unit}", moored(case)),
         number(f"Mini-\nmum {unit}", lambda group: None if group[0].row.role in passes
                else load_text(min(one.least for one in group))),
         number("Tilt\n°", lambda group: None if group[0].row.role == "anchor"
                else QUANTITIES["tilt"].format(max(one.tilt for one in group))),
-        number(f"Capa-\ncity {unit}", standing(lambda one: capacity_text(one.standing))),
-        words("Use", standing(lambda one: _bar_cell(one.standing)), 0.45),
-        number("%", standing(lambda one: _use_cell(one.standing))),
+        number(f"Capa-\ncity {unit}", moored(lambda one: capacity_text(one.moored))),
+        words("Use", moored(lambda one: _bar_cell(one.moored)), 0.45),
+        number("%", moored(lambda one: _use_cell(one.moored))),
         number(f"Launch {unit}", falling(lambda one: _force_text(one.launch_tension))),
         number(f"Capa-\ncity {unit}", falling(lambda one: capacity_text(one.launch))),
         number("Use %", falling(lambda one: _use_cell(one.launch))),
@@ -124,12 +124,12 @@ _Show = Callable[[PieceEnvelope], object]
 
 
 def _most_used(
-    group: Sequence[PieceEnvelope], when: Literal["standing", "launch"] = "standing"
+    group: Sequence[PieceEnvelope], when: Literal["moored", "launch"] = "moored"
 ) -> PieceEnvelope:
     def used(one: PieceEnvelope) -> tuple[float, float]:
-        finding = one.standing if when == "standing" else one.launch
+        finding = one.moored if when == "moored" else one.launch
         share = None if finding is None else finding.utilisation
-        return share or 0.0, (one.tension if when == "standing" else one.launch_tension) or 0.0
+        return share or 0.0, (one.tension if when == "moored" else one.launch_tension) or 0.0
 
     return max(group, key=used)
 
@@ -175,8 +175,8 @@ def _hardware_table(loads: Sequence[PieceEnvelope]) -> Table:
         number("Pieces", 2),
         words("Most used, moored", lambda row: named(row[0])),
         number(f"Largest\ntension {unit}", lambda row: load_text(row[0].tension)),
-        number(f"Capa-\ncity {unit}", lambda row: capacity_text(row[0].standing)),
-        number("Use %", lambda row: _use_cell(row[0].standing)),
+        number(f"Capa-\ncity {unit}", lambda row: capacity_text(row[0].moored)),
+        number("Use %", lambda row: _use_cell(row[0].moored)),
         *(launch if launched else ()),
         aside="one row per type, for the piece with the highest utilisation",
         ruled=False,
@@ -185,7 +185,7 @@ def _hardware_table(loads: Sequence[PieceEnvelope]) -> Table:
 
 def _anchor_table(signed: SignedMooring) -> Iterator[Table]:
     rows = [
-        (case, result) for case in signed.standing for result in case.results if result.leg.anchored
+        (case, result) for case in signed.moored for result in case.results if result.leg.anchored
     ]
     if not rows:
         return

@@ -163,10 +163,10 @@ def load_cases(assessment: Assessment) -> list[LoadCase]:
     """
     numbers: dict[str, int] = {}
     found: dict[str, LoadCase] = {}
-    for stand in assessment.in_environments:
-        environment = stand.leg.file.environment.name or OWN
+    for checked in assessment.in_environments:
+        environment = checked.leg.file.environment.name or OWN
         number = numbers.setdefault(environment, len(numbers) + 1)
-        for one in stand.situations:
+        for one in checked.situations:
             code = case_of(number, one.name)
             known = found.get(code)
             if known is not None and (known.environment != environment or one.result is None):
@@ -197,7 +197,7 @@ class PieceEnvelope:
     row : results for the piece in the first case
     tension, case : maximum tension [N], and the code of the load case in which it occurs
     least, tilt : minimum tension [N] and maximum tilt [degrees]
-    standing, launch : strength finding in equilibrium, and during launch; None if there was no
+    moored, launch : strength finding in equilibrium, and during launch; None if there was no
         check
     launch_tension, rise_tension : maximum tension during launch and during ascent [N]; None if
         unknown
@@ -209,7 +209,7 @@ class PieceEnvelope:
     case: str
     least: float
     tilt: float
-    standing: Finding | None
+    moored: Finding | None
     launch: Finding | None
     launch_tension: float | None
     rise_tension: float | None
@@ -219,11 +219,11 @@ def piece_loads(assessment: Assessment, cases: Sequence[LoadCase]) -> list[Piece
     """Compute the extreme loads on every piece, from the top to the anchor, leg by leg."""
     strong, falling = (found_on(assessment, name) for name in ("strength", "launch-strength"))
     launch, recovery = assessment.launch, assessment.recovery
-    standing = [one for one in cases if one.results]
+    moored = [one for one in cases if one.results]
     found = []
-    first = (row for result in standing[0].results for row in result.components)
+    first = (row for result in moored[0].results for row in result.components)
     for number, row in enumerate((one for one in first if one.use != STAND_IN), 1):
-        every = ((one.rows.get(row.label), one.code) for one in standing)
+        every = ((one.rows.get(row.label), one.code) for one in moored)
         rows = [(each, code) for each, code in every if isinstance(each, ComponentRow)]
         tension, case = max(((each.tension, code) for each, code in rows), key=lambda one: one[0])
         falls = None if launch is None else _at(launch.greatest_tension, row.index)

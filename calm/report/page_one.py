@@ -84,7 +84,7 @@ class SignedMooring:
     sha256: str
 
     @property
-    def standing(self) -> list[LoadCase]:
+    def moored(self) -> list[LoadCase]:
         """Load cases that have an equilibrium."""
         return [one for one in self.cases if one.results]
 
@@ -130,7 +130,7 @@ def title_block(signed: SignedMooring) -> TitleBlock:
         if file.legs or len({one.leg.name for one in signed.assessment.in_environments}) > 1
         else ""
     )
-    results = [one for case in signed.standing for one in case.results]
+    results = [one for case in signed.moored for one in case.results]
     surface = any(one.type == "surface" for one in results)
     place = "" if position is None else provenance.position_text(position)
     cruise = f"cruise {field('cruise')}" if field("cruise") else ""
@@ -266,7 +266,7 @@ def cases_table(signed: SignedMooring) -> Table:
         ruled=False,
         aside="governing values are bold; the last row names their components",
     )
-    numbers = item_numbers(*signed.standing[0].results) if signed.standing else {}
+    numbers = item_numbers(*signed.moored[0].results) if signed.moored else {}
 
     def place(label: str) -> str:
         item = numbers.get(label)
@@ -367,7 +367,7 @@ def page_one(signed: SignedMooring, page_size: str = "a4") -> Iterator[Block]:
     yield title_block(signed)
     yield verdict_box(signed)
     yield cases
-    if signed.standing and signed.standing[0].as_given:
+    if signed.moored and signed.moored[0].as_given:
         yield Beside(
             (_mooring_figure(signed, height),), (items,), _FIGURE_WIDTH / _WIDTH, height + 42.0
         )
@@ -382,7 +382,7 @@ def _empty_list_text(signed: SignedMooring) -> str:
 
 
 def _mooring_figure(signed: SignedMooring, height: float) -> Figure:
-    first, *others = signed.standing
+    first, *others = signed.moored
     drawn = [DrawnCase(one.code, one.results) for one in (first, *others)]
     svg, scale = elevation(
         signed.assessment.name, drawn, _labels(signed, first), (_FIGURE_WIDTH - 6.0, height)

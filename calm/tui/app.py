@@ -263,7 +263,7 @@ class BuildApp(App[int]):
             self.open_text_if_invalid(as_judged=is_first)
 
     def _tell_lost_environment(self) -> None:
-        before, self._lost = self._lost, self.session.standing.lost_environment
+        before, self._lost = self._lost, self.session.choice.lost_environment
         if self._lost not in (None, before):
             message = f"Environment {self._lost} no longer exists; the default environment is used"
             self.tell(message)

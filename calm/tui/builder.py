@@ -74,11 +74,11 @@ class BuilderScreen(ComparingScreen):
         (self.query_one(Picture) if is_zoomed else self.line.table).focus()
 
     def action_next_environment(self) -> None:
-        standing = self.session.standing
-        if len(standing.environments) == 1:
+        choice = self.session.choice
+        if len(choice.environments) == 1:
             self.tell("The file has one environment; add others on the water screen (w)")
             return
-        standing.environment = name = standing.next_environment
+        choice.environment = name = choice.next_environment
         self.show_draft()
         which = f"environment {name}" if name else "default environment"
         self.tell(f"The line is shown in the {which}")

@@ -98,9 +98,9 @@ class LineScreen(screen.DraftScreen):
 
     def titles(self) -> tuple[str, str]:
         name = " ".join(self.session.draft.text_at(("name",)).split())
-        standing, parts = self.session.standing, []
-        here = standing.environment
-        if here is not None or len(standing.environments) > 1:
+        choice, parts = self.session.choice, []
+        here = choice.environment
+        if here is not None or len(choice.environments) > 1:
             parts.append(f"environment {here}" if here else "default environment")
         parts.append(state_word(self.workspace.view, old=not self.workspace.is_fresh))
         return f"{self.workspace.called}  {name}".rstrip(), "   ".join(parts)

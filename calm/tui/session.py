@@ -29,7 +29,7 @@ class Session:
     ----------
     catalogs : catalogue files given on the command line
     copied : text of the copied items or clamps
-    standing : choice of the environment in which the line is solved
+    choice : choice of the environment in which the line is solved
     after_save : function called with the path and text of a saved file
     added : rows added by the last change
     followed : messages about the references to labels that were updated in the last change
@@ -58,7 +58,7 @@ class Session:
         self._are_clamps = False  # whether the clipboard contains clamps
         self.followed: list[str] = []
         self.added: frozenset[Place] = frozenset()
-        self.standing = EnvironmentChoice(self.history, environment)
+        self.choice = EnvironmentChoice(self.history, environment)
         self.after_save: Callable[[Path, str], object] | None = None
 
     @property

@@ -56,8 +56,8 @@ def open_session(
 def _refuse_other_files(session: Session) -> None:
     """Raise an exception for mistakes in other files, which the builder cannot edit."""
     Catalogue.load(session.catalogs)
-    here, names = session.standing.environment, session.standing.environments
-    if (lost := session.standing.lost_environment) is not None:
+    here, names = session.choice.environment, session.choice.environments
+    if (lost := session.choice.lost_environment) is not None:
         what = f"--environment {lost} is neither a file nor an environment of {session.name}"
         raise UsageError(unknown(what, lost, filter(None, names)))
     given = {str(each) for each in session.catalogs}

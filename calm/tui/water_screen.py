@@ -100,16 +100,16 @@ class WaterScreen(screen.DraftScreen):
     @property
     def water(self) -> WaterForm:
         """The displayed environment in the current draft."""
-        standing = self.session.standing
-        here = standing.environment
-        return WaterForm(self.session.draft, here if here in standing.environments else None)
+        choice = self.session.choice
+        here = choice.environment
+        return WaterForm(self.session.draft, here if here in choice.environments else None)
 
     @property
     def environment_file(self) -> str | None:
         """Environment file from the command line if its environment is shown, otherwise None."""
-        standing, draft = self.session.standing, self.session.draft
-        here = standing.environment
-        return None if here in standing.environments or draft.problems else here
+        choice, draft = self.session.choice, self.session.draft
+        here = choice.environment
+        return None if here in choice.environments or draft.problems else here
 
     def titles(self) -> tuple[str, str]:
         state = verdict_pane.state_word(self.workspace.view, old=not self.workspace.is_fresh)
@@ -135,7 +135,7 @@ class WaterScreen(screen.DraftScreen):
         self.show_view()
         water = self.water
         file = self.environment_file
-        names = ["default" if name is None else name for name in self.session.standing.environments]
+        names = ["default" if name is None else name for name in self.session.choice.environments]
         names += [file] if file else []
         here = file or water.variant or "default"
         listing = "   ".join(f"[{name}]" if name == here else name for name in names)
@@ -322,12 +322,12 @@ class WaterScreen(screen.DraftScreen):
 
     def action_next_environment(self) -> None:
         if self.settle():
-            self._environment_file_in_use(self.session.standing.next_environment)
+            self._environment_file_in_use(self.session.choice.next_environment)
 
     def action_new_environment(self) -> None:
         def take(texts: dict[str, str]) -> None:
             name, water = texts["name"], self.water
-            if name in self.session.standing.environments:
+            if name in self.session.choice.environments:
                 self.workspace.tell(f"There is an environment {name} already", wrong=True)
                 return
             known = water.value("current")
@@ -357,7 +357,7 @@ class WaterScreen(screen.DraftScreen):
             self._environment_file_in_use(None)
 
     def _environment_file_in_use(self, name: str | None) -> None:
-        before, self.session.standing.environment = self.environment_file, name
+        before, self.session.choice.environment = self.environment_file, name
         self.discard_typing()
         self.show_draft()
         self.workspace.tell(f"The line is no longer solved in {before}" if before else "")

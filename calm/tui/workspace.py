@@ -106,7 +106,7 @@ class Workspace:
         """Whether the results belong to the current text, path and environment."""
         session, view = self.session, self.view
         return view is not None and view.is_of(
-            session.draft.text, session.file.path, session.standing.environment
+            session.draft.text, session.file.path, session.choice.environment
         )
 
     def judged(self, otherwise: str) -> View | None:
@@ -202,7 +202,7 @@ class Judging:
         else:
             self._is_judging, self._is_wanted = True, False
             session = self._workspace.session
-            path, environment = session.file.path, session.standing.environment
+            path, environment = session.file.path, session.choice.environment
             text, catalogs, keep = session.draft.text, session.catalogs, self._workspace.view
             self._work(
                 lambda live: live.judge(text, path, environment, catalogs, keep=keep), fully=False

@@ -440,7 +440,7 @@ def test_what_is_changed_in_a_named_environment_has_the_rest_of_the_files_own(
         await driver.press("w", "f5")
         await enter(driver, id, text)
         await driver.settle()
-        assert driver.session.standing.environment == "storm"
+        assert driver.session.choice.environment == "storm"
         key = id.partition("-")[0]
         assert driver.session.draft.value(("environments", "storm", key)) == expected
         assert driver.view.problems == ()
@@ -684,7 +684,7 @@ def test_named_environments_are_added_switched_and_dropped(drive, small):
         await driver.type("storm")
         await driver.press("enter")
         await driver.settle()
-        assert driver.session.standing.environment == "storm"
+        assert driver.session.choice.environment == "storm"
         await enter(driver, "current-speed", "1.1 m/s")
         await driver.settle()
         assert driver.view.file.environment.name == "storm"
@@ -694,7 +694,7 @@ def test_named_environments_are_added_switched_and_dropped(drive, small):
         in_storm = driver.view.result.top.knockdown
         await driver.press("escape", "e")
         await driver.settle()
-        assert driver.session.standing.environment is None
+        assert driver.session.choice.environment is None
         assert driver.view.result.top.knockdown < in_storm
         await driver.press("e", "w", "f7")
         assert driver.session.draft.value(("environments",)) is None

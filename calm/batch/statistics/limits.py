@@ -9,7 +9,7 @@ from itertools import groupby
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.batch.statistics.series import Column, LegSeats, ResultColumns, Seat
+from calm.batch.statistics.series import Column, LegColumns, PartNumber, ResultColumns
 from calm.batch.statuses import Ending
 from calm.case import Design
 from calm.case.leg import Leg
@@ -41,7 +41,7 @@ class CountedLimit:
     criterion : criterion of the rule
     leg : leg to which the criterion applies; values missing from the catalogue are replaced by the
         lower bounds of their estimates
-    seats : column numbers of the leg in the batch result, if there are several legs
+    columns : column numbers of the leg in the batch result, if there are several legs
     on_estimate : whether the limit is the lower bound of an estimate; a value beyond such a limit
         is not necessarily a failure
     """
@@ -49,14 +49,14 @@ class CountedLimit:
     rule: Rule
     criterion: Criterion
     leg: Leg
-    seats: LegSeats | None = None
+    columns: LegColumns | None = None
     on_estimate: bool = False
 
     def values(self, series: ResultColumns) -> Column:
         """Return the values (n,) of the limited quantity in a batch, with NaN for profiles to which
         the criterion does not apply.
         """
-        own = series if self.seats is None else series.of_leg(self.seats)
+        own = series if self.columns is None else series.of_leg(self.columns)
         return _VALUES[self.criterion.quantity](own, self.criterion.part, self.leg)
 
     def broken(self, values: Column) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
@@ -76,11 +76,11 @@ def limits_of(mooring: Design) -> tuple[CountedLimit, ...]:
     checked as a surface mooring, even if its float is submerged. As in the design check, missing
     values of a component are replaced by the lower bounds of their estimates.
     """
-    seats = LegSeats.of_file(mooring.file) if mooring.several else (None,)
+    legs = LegColumns.of_file(mooring.file) if mooring.several else (None,)
     order = list(RULES)
     found = [
-        CountedLimit(rule, criterion, estimated(leg), seat, _on_estimate(rule, criterion, leg))
-        for leg, seat in zip(mooring.typed_legs, seats, strict=True)
+        CountedLimit(rule, criterion, estimated(leg), columns, _on_estimate(rule, criterion, leg))
+        for leg, columns in zip(mooring.typed_legs, legs, strict=True)
         for rule in RULES.values()
         if rule.criteria is not None
         for criterion in rule.criteria(estimated(leg))
@@ -109,28 +109,30 @@ def top_knockdown(series: ResultColumns) -> Column:
     return series.column("knockdown", 0)
 
 
-def _seat(part: JudgedPart) -> Seat:
-    return Seat(part.index) if part.clamp is None else Seat(part.clamp, True)
+def _part_number(part: JudgedPart) -> PartNumber:
+    return PartNumber(part.index) if part.clamp is None else PartNumber(part.clamp, True)
 
 
 def _greatest_tension(series: ResultColumns, part: JudgedPart, leg: Leg) -> Column:
     pieces = leg.file.pieces
     first = sum(len(piece.clamps) for piece in pieces[: part.index])
     clamps = range(first, first + len(pieces[part.index].clamps))
-    return series.greatest_tension([_seat(part), *(Seat(clamp, True) for clamp in clamps)])
+    return series.greatest_tension(
+        [_part_number(part), *(PartNumber(clamp, True) for clamp in clamps)]
+    )
 
 
 def _least_tension(series: ResultColumns, part: JudgedPart, leg: Leg) -> Column:
     """Return the minimum tension (n,) at the ends of a piece [N]; NaN if the whole piece is on the
     seabed.
     """
-    water, pieces, least = leg.water, leg.file.pieces, series.least_tension(_seat(part))
+    water, pieces, least = leg.water, leg.file.pieces, series.least_tension(_part_number(part))
     bed: Column | float = water.depth * (1.0 - _LYING)
     for name, deeper in (("x_top", water.deeper_east), ("y_top", water.deeper_north)):
         if deeper != 0.0 and pieces[-1].use != STAND_IN:
             anchor = series.column(name, len(pieces) - 1)
             bed = bed + deeper * (series.column(name, part.index) - anchor)
-    least[series.depth(_seat(part)) >= bed] = np.nan
+    least[series.depth(_part_number(part)) >= bed] = np.nan
     return least
 
 
@@ -138,14 +140,14 @@ def _greatest_depth(series: ResultColumns, part: JudgedPart, leg: Leg) -> Column
     """Return the depth (n,) of the deeper end of a piece [m]; the lower end has the depth of the
     next piece's top.
     """
-    depth = series.depth(_seat(part))
+    depth = series.depth(_part_number(part))
     floats = depth <= (AT_SURFACE if reaches_the_surface(leg) else -np.inf)
     pieces = leg.file.pieces
     if part.clamp is None and pieces[part.index + 1].use == STAND_IN:
         # an upper bound of the depth, unless the piece stretches
         depth += pieces[part.index].length or 0.0
     elif part.clamp is None:
-        np.maximum(depth, series.depth(Seat(part.index + 1)), out=depth)
+        np.maximum(depth, series.depth(PartNumber(part.index + 1)), out=depth)
     depth[floats] = np.nan
     return depth
 
@@ -170,7 +172,7 @@ _VALUES: dict[str, Callable[[ResultColumns, JudgedPart, Leg], Column]] = {
     "tension": _greatest_tension,
     "tension_bottom": lambda series, part, _: series.column("tension_bottom", part.index),
     "least_tension": _least_tension,
-    "tilt": lambda series, part, _: series.of_part("tilt", _seat(part)),
+    "tilt": lambda series, part, _: series.of_part("tilt", _part_number(part)),
     "depth": _greatest_depth,
     "top_depth": lambda series, _, __: series.column("depth_top", 0),
     "knockdown": lambda series, _, __: top_knockdown(series),

@@ -31,7 +31,7 @@ _ROWS = 32768  # profiles turned at a time
 _FIGURE = np.dtype(np.float32)
 
 
-class Seat(NamedTuple):
+class PartNumber(NamedTuple):
     """Column number of a part in a result.
 
     Attributes
@@ -44,7 +44,7 @@ class Seat(NamedTuple):
     clamped: bool = False
 
 
-class LegSeats(NamedTuple):
+class LegColumns(NamedTuple):
     """Columns of a batch result that belong to one leg of a net.
 
     Attributes
@@ -58,7 +58,7 @@ class LegSeats(NamedTuple):
     number: int
 
     @classmethod
-    def of_file(cls, file: MooringFile) -> list[LegSeats]:
+    def of_file(cls, file: MooringFile) -> list[LegColumns]:
         """Return the column positions for each leg of a file."""
         found, clamped = [], 0
         for number, leg in enumerate(file.legs):
@@ -123,7 +123,7 @@ class ResultColumns:
     def __len__(self) -> int:
         return len(self.time)
 
-    def of_leg(self, leg: LegSeats) -> ResultColumns:
+    def of_leg(self, leg: LegColumns) -> ResultColumns:
         """Return the columns of one leg of a net, which share the temporary file of the whole
         result.
         """
@@ -139,14 +139,17 @@ class ResultColumns:
         return view
 
     @property
-    def seats(self) -> tuple[Seat, ...]:
+    def parts(self) -> tuple[PartNumber, ...]:
         """Column numbers of all components, and then of all clamps."""
         components, clamps = len(self.component_label), len(self.clamp_label)
-        return (*map(Seat, range(components)), *(Seat(each, True) for each in range(clamps)))
+        return (
+            *map(PartNumber, range(components)),
+            *(PartNumber(each, True) for each in range(clamps)),
+        )
 
-    def label(self, seat: Seat) -> str:
+    def label(self, part: PartNumber) -> str:
         """Return the label of a part."""
-        return (self.clamp_label if seat.clamped else self.component_label)[seat.number]
+        return (self.clamp_label if part.clamped else self.component_label)[part.number]
 
     def ends(self, name: str) -> Column:
         """Return the values (n,) of a variable of the whole line, such as `anchor_vertical`."""
@@ -168,40 +171,40 @@ class ResultColumns:
             values.append(np.frombuffer(self._turned.read(_FIGURE.itemsize), _FIGURE)[0])
         return np.array(values, _FIGURE)
 
-    def depth(self, seat: Seat) -> Column:
+    def depth(self, part: PartNumber) -> Column:
         """Return the depth (n,) of a clamp, or of a component's upper end [m]."""
-        return self.column("clamp_depth" if seat.clamped else "depth_top", seat.number)
+        return self.column("clamp_depth" if part.clamped else "depth_top", part.number)
 
-    def of_part(self, name: str, seat: Seat) -> Column:
+    def of_part(self, name: str, part: PartNumber) -> Column:
         """Return the values (n,) of `tilt` [degrees] or `knockdown` [m] for a component or
         clamp.
         """
-        return self.column(f"clamp_{name}" if seat.clamped else name, seat.number)
+        return self.column(f"clamp_{name}" if part.clamped else name, part.number)
 
-    def greatest_tension(self, seats: Sequence[Seat]) -> Column:
+    def greatest_tension(self, parts: Sequence[PartNumber]) -> Column:
         """Return the maximum tension (n,) over several parts [N].
 
         For a component, both ends are considered.
         """
-        return self._gathered(np.maximum, seats)
+        return self._gathered(np.maximum, parts)
 
-    def least_tension(self, seat: Seat) -> Column:
+    def least_tension(self, part: PartNumber) -> Column:
         """Return the smaller of the tensions (n,) at the ends of a component, or the tension at a
         clamp [N].
         """
-        return self._gathered(np.minimum, [seat])
+        return self._gathered(np.minimum, [part])
 
-    def _gathered(self, choose: np.ufunc, seats: Sequence[Seat]) -> Column:
-        first, *others = (column for seat in seats for column in self._tensions(seat))
+    def _gathered(self, choose: np.ufunc, parts: Sequence[PartNumber]) -> Column:
+        first, *others = (column for part in parts for column in self._tensions(part))
         chosen, tension = self._read(first), None
         for other in others:
             tension = self._read(other, tension)
             choose(chosen, tension, out=chosen)
         return chosen
 
-    def _tensions(self, seat: Seat) -> tuple[int, ...]:
-        names = ("clamp_tension",) if seat.clamped else ("tension_top", "tension_bottom")
-        return tuple(self._columns[name][seat.number] for name in names)
+    def _tensions(self, part: PartNumber) -> tuple[int, ...]:
+        names = ("clamp_tension",) if part.clamped else ("tension_top", "tension_bottom")
+        return tuple(self._columns[name][part.number] for name in names)
 
     def _read(self, column: int, into: Column | None = None) -> Column:
         values = np.empty(len(self), _FIGURE) if into is None else into

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from calm.batch.statistics import limits
 from calm.batch.statistics.extremes import Fit, LevelsRefused, median_step, return_levels, years_of
-from calm.batch.statistics.series import Column, LegSeats, ResultColumns, Seat, Times
+from calm.batch.statistics.series import Column, LegColumns, PartNumber, ResultColumns, Times
 from calm.batch.statuses import Ending, endings
 from calm.case import Design
 from calm.case.profilers import profilers_in
@@ -221,28 +221,28 @@ def _parts(series: ResultColumns) -> Iterator[PartDistributions]:
     def of(values: Column) -> Distribution | None:
         return distribution_of(values, series.time)
 
-    for seat in series.seats:
+    for part in series.parts:
         yield PartDistributions(
-            series.label(seat),
-            seat.clamped,
-            of(series.of_part("knockdown", seat)),
-            of(series.of_part("tilt", seat)),
-            of(series.greatest_tension([seat])),
+            series.label(part),
+            part.clamped,
+            of(series.of_part("knockdown", part)),
+            of(series.of_part("tilt", part)),
+            of(series.greatest_tension([part])),
         )
 
 
 def _stops(series: ResultColumns, mooring: Design) -> Iterator[StopDepths]:
-    seats = {series.label(seat): seat for seat in series.seats}
+    parts = {series.label(part): part for part in series.parts}
     position = mooring.file.environment.position or mooring.file.position
     latitude = MID_LATITUDE if position is None else position.latitude
     for profiler in (one for leg in mooring.legs for one in profilers_in(leg)):
         assert isinstance(profiler.component, Profiler)
         for stop, label in zip(("upper", "lower"), profiler.component.between or (), strict=True):
-            seat = seats[label]
+            part = parts[label]
             # a rigid upper stop ends where the next piece begins
-            if stop == "upper" and not seat.clamped:
-                seat = Seat(seat.number + 1)
-            depths = np.nanpercentile(series.depth(seat), STOP_SHARES)
+            if stop == "upper" and not part.clamped:
+                part = PartNumber(part.number + 1)
+            depths = np.nanpercentile(series.depth(part), STOP_SHARES)
             pressures = pressure_at(depths, latitude)
             yield StopDepths(
                 profiler.label, stop, tuple(depths.tolist()), tuple(pressures.tolist())
@@ -251,8 +251,8 @@ def _stops(series: ResultColumns, mooring: Design) -> Iterator[StopDepths]:
 
 def _greatest_tilt(series: ResultColumns) -> Column:
     greatest = np.full(len(series), np.nan, np.float32)
-    for seat in series.seats:
-        np.fmax(greatest, series.of_part("tilt", seat), out=greatest)
+    for part in series.parts:
+        np.fmax(greatest, series.of_part("tilt", part), out=greatest)
     return greatest
 
 
@@ -282,8 +282,8 @@ def _columns_of(series: ResultColumns, mooring: Design) -> _LegColumns:
     """
     if not mooring.several:
         return dict.fromkeys(RESPONSES, (series,))
-    keys, seats = mooring.file.legs, LegSeats.of_file(mooring.file)
-    legs = [series.of_leg(each) for each in seats]
+    keys, columns = mooring.file.legs, LegColumns.of_file(mooring.file)
+    legs = [series.of_leg(each) for each in columns]
     free = [leg for one, leg in zip(keys, legs, strict=True) if one.top.free]
     anchored = [leg for one, leg in zip(keys, legs, strict=True) if one.bottom.anchor is not None]
     both = [leg for leg in free if leg in anchored]
@@ -342,7 +342,7 @@ def _profile(series: ResultColumns, legs: _LegColumns, index: int) -> WorstProfi
         anchor_tension=greatest("anchor_tension", lambda leg: leg.at("tension_top", index)[-1]),
         tilt=float(tilts[most]),
         offset=greatest("offset", lambda leg: hypot(across(leg, "x_top"), across(leg, "y_top"))),
-        leaning=series.label(series.seats[most]),
+        leaning=series.label(series.parts[most]),
     )
 
 

@@ -149,7 +149,7 @@ def test_the_page_of_one_of_many_moorings_has_rows_of_one_finding_too(signed):
 def test_hardware_of_a_type_is_shown_with_load_capacity_and_use_of_one_piece(signed):
     loads = {
         f"{one.number} {one.row.label}": one
-        for one in piece_loads(signed.assessment, signed.standing)
+        for one in piece_loads(signed.assessment, signed.moored)
     }
     rows = table(line_page(signed), "Connecting hardware").rows
     assert len(rows) == 4
@@ -157,7 +157,7 @@ def test_hardware_of_a_type_is_shown_with_load_capacity_and_use_of_one_piece(sig
         stands, falls = loads[row[2]], loads[row[6]]
         assert row[3] == f"{stands.tension / 1000.0:.2f}"
         assert row[7] == f"{falls.launch_tension / 1000.0:.2f}"
-        for cells, finding in ((row[4:6], stands.standing), (row[8:], falls.launch)):
+        for cells, finding in ((row[4:6], stands.moored), (row[8:], falls.launch)):
             capacity = float(re.sub("[^0-9.]", "", cells[0]))
             assert capacity == pytest.approx(finding.limit / 1000.0, abs=0.005)
             assert cells[1] == percent_text(finding.utilisation)
@@ -166,7 +166,7 @@ def test_hardware_of_a_type_is_shown_with_load_capacity_and_use_of_one_piece(sig
 
 
 def test_equal_floats_share_a_row_of_their_extremes(signed):
-    loads = piece_loads(signed.assessment, signed.standing)
+    loads = piece_loads(signed.assessment, signed.moored)
     chains = [one for one in loads if "back-up glass chain" in one.row.label]
     rows = table(line_page(signed), "The line").rows
     (row,) = [texts(row) for row in rows if "back-up glass chain" in row[1].text]
@@ -236,7 +236,7 @@ def test_pieces_have_one_number_in_every_document(signed):
 def test_depths_stand_under_the_unit_chosen(signed):
     show_in({"length": "ft"})
     try:
-        top = signed.standing[0].depth
+        top = signed.moored[0].depth
         cases = table(page_one(signed), "Load cases")
         assert cases.columns[2].heading == "Top depth\nft"
         assert cases.rows[0][2].text == f"{top / 0.3048:.0f}"

@@ -52,7 +52,7 @@ def test_a_text_that_cannot_be_read_changes_no_environment(drive, stormy):
         assert isinstance(driver.app.screen, TextScreen)
         await driver.press("[", "space")
         await driver.settle()
-        assert driver.session.draft.problems and driver.session.standing.environment == "storm"
+        assert driver.session.draft.problems and driver.session.choice.environment == "storm"
 
     drive(story, stormy, environment="storm")
 
@@ -60,6 +60,6 @@ def test_a_text_that_cannot_be_read_changes_no_environment(drive, stormy):
 def test_an_environment_file_stays(small, folder):
     (folder / "env.yaml").write_text("environment: {depth: 90 m}\n")
     session, _ = open_session(small, "env.yaml")
-    assert session.standing.environment == "env.yaml" and session.standing.lost_environment is None
-    session.standing.environment = None
-    assert session.standing.environment is None
+    assert session.choice.environment == "env.yaml" and session.choice.lost_environment is None
+    session.choice.environment = None
+    assert session.choice.environment is None
