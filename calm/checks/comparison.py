@@ -122,9 +122,7 @@ def _solved(design: Design) -> _Solved:
 def _figures_of(design: _Solved) -> _Figures:
     result, assessment = design
     solved = not isinstance(result, NoEquilibrium)
-    found: _Figures = {
-        "status": ("status", "", "in equilibrium" if solved else "has no equilibrium")
-    }
+    found: _Figures = {"status": ("status", "", "solved" if solved else "has no equilibrium")}
     if not isinstance(result, NoEquilibrium):
         found |= _figures_of_legs(result) if result.several else _figures_of_leg(result.leg)
         greatest = max(row.tension for row in result.components)
