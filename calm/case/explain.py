@@ -197,13 +197,13 @@ def _notes(result: Result, quantities: tuple[str, ...], *, surface: bool) -> Ite
         )
     if surface:
         yield (
-            "A float at the surface has no knockdown; instead, the table gives the causes of its "
-            "excursion and of its used buoyancy."
+            "A float at the surface has no knockdown. The table shows how much each cause adds to "
+            "its excursion and to its buoyancy in use."
         )
     elif "knockdown" not in quantities:
         yield (
-            "The line has no unique shape in still water, so its knockdown is undefined; instead, "
-            "the table gives the causes of its excursion."
+            "The line has no unique shape in still water, so its knockdown is undefined. The table "
+            "shows how much each cause adds to its excursion."
         )
     if not result.design.water.moving:
         yield "There is no current, so there is no drag."

@@ -156,8 +156,9 @@ def size(
     before = at(adjustment.now)
     if wanted.relation == "=" and before.measured is None:
         raise UsageError(
-            f"{wanted.text}: the search needs a present value to start from, and the mooring has "
-            f"none{f' ({before.failure})' if before.failure else ''}; write <= or >="
+            f"{wanted.text}: a search for an equal value starts from the present value, and the "
+            f"mooring has none{f' ({before.failure})' if before.failure else ''}; write <= or >= "
+            "instead of ="
         )
     first = 0.0 if before.measured is None else before.measured - wanted.limit
     sign = -1.0 if wanted.relation == ">=" or (wanted.relation == "=" and first < 0.0) else 1.0

@@ -81,7 +81,7 @@ def _weaker_than(ordinary: Leg, other: Leg) -> Iterator[Found]:
         f"{say('speed', float(after[at]))}, against {say('speed', float(before[at]))} in the "
         "first environment."
     )
-    remedy = f"Check the levels of {name} for a misplaced decimal point or exchanged rows."
+    remedy = f"Check the current of {name} for a misplaced decimal point or exchanged rows."
     yield other, verdict_on(None, State.WARN, message, remedy)
 
 

@@ -45,9 +45,10 @@ from calm.report.load_cases import LOAD, length_text, load_text
 from calm.report.open_items import (
     FIGURE_FIELDS,
     advice,
+    counts_text,
     figure_text,
     limit_text,
-    open_counts,
+    open_groups,
     percent_text,
     plain,
     where_text,
@@ -75,14 +76,11 @@ def checks_table(signed: SignedMooring, findings: Sequence[Finding]) -> Table:
         for one in reported
     ]
     counts = {state: sum(one.state is state for one in findings) for state in State}
-    items = open_counts(signed.assessment)
-
-    def of_items(state: State) -> str:
-        return f" ({items[state]} open item{'s' * (items[state] != 1)})" if items[state] else ""
+    items = counts_text(open_groups(signed.assessment))
 
     named = {State.PASS: "passed", State.WARN: "warned", State.FAIL: "failed"}
     counted = ", ".join(
-        f"{count} {named.get(state, state.value.replace('-', ' '))}{of_items(state)}"
+        f"{count} {named.get(state, state.value.replace('-', ' '))}"
         for state, count in counts.items()
         if count
     )
@@ -102,7 +100,8 @@ def checks_table(signed: SignedMooring, findings: Sequence[Finding]) -> Table:
         *blocks.of_first(*FIGURE_FIELDS, words("Where, case", where_text, 0.9)),
         words("Basis of the limit; remedy", basis, 2.2),
         note=f"These {len(rows)} rows summarise {len(findings)} findings: {counted}. "
-        "The option --all-findings lists all of them in checks.csv.",
+        + (f"Open items: {items}. " if items else "")
+        + "The option --all-findings lists all findings in checks.csv.",
         aside=(
             "Each rule has a row for its finding with the highest utilisation, and a second row if "
             "another finding is more severe. The number of pieces is in brackets."

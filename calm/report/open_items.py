@@ -232,8 +232,10 @@ def _item_head(group: Sequence[Finding], worst: Finding) -> str:
     labels = list(dict.fromkeys(one.component or "" for one in group))
     of = f", {short(named_components(_one_per_component(group)), 90)}" if labels != [""] else ""
     if worst.missing is not None:
-        lack = "missing" if worst.missing.class_estimate is None else "estimate too low"
-        return f"{worst.missing.component_id}: {worst.missing.quantity.replace('_', ' ')} {lack}"
+        quantity = worst.missing.quantity.replace("_", " ")
+        estimated = worst.missing.class_estimate is not None
+        lack = f"estimated {quantity} too low" if estimated else f"{quantity} missing"
+        return f"{worst.missing.component_id}: {lack}"
     if worst.state is State.ESTIMATED:
         passes = "passes" if len(labels) == 1 else "pass"
         named = _capitalised(short(named_components(_one_per_component(group)), 90))

@@ -306,7 +306,7 @@ def governing_table(signed: SignedMooring) -> Table:
     note += "Cases: L launch, R rise, B break."
     if rest:
         most = percent_text(rest[0].utilisation)
-        note = f"All other checks: {most} % or less (checks in full). {note}"
+        note = f"All other checks: {most} % or less (see checks in full). {note}"
     return table_of(
         "Governing checks",
         kept,
@@ -362,7 +362,10 @@ def page_one(signed: SignedMooring, page_size: str = "a4") -> Iterator[Block]:
     height = TEXT_HEIGHT[page_size] - _FIXED - _ROW * rows
     height -= _TITLE_LINE * len(signed.assessment.file.description or "") // _TITLE_LETTERS
     items = OpenItems(
-        "Open items", tuple(signed.items) or (), _empty_list_text(signed), "more: checks in full"
+        "Open items",
+        tuple(signed.items) or (),
+        _empty_list_text(signed),
+        "more: see checks in full",
     )
     yield title_block(signed)
     yield verdict_box(signed)

@@ -158,7 +158,7 @@ def test_a_missing_value_is_not_also_optional(calm, folder):
     assert block.count("working_load:") == 1
     assert "#   rcm11:  # meter\n#     mass:" in block
     shown = calm("check", "m.yaml").out
-    assert "? rcm11: working load estimate too low" in shown
+    assert "? rcm11: estimated working load too low" in shown
     assert "Meter: passes with an estimated value" not in shown
 
 

@@ -268,7 +268,8 @@ def test_low_and_high_water_are_stated_with_the_environment(signed, tmp_path):
 
 def test_the_counts_of_findings_name_the_open_items_of_page_one(signed):
     note = table(checks_page(signed), "Checks in full").note
-    assert "51 not judged (2 open items)" in note and "(4 open items)" in note
+    assert ", 51 not judged, " in note
+    assert "Open items: 4 estimated, 2 not judged. " in note
     told = verdict_sentence(signed.assessment)
     assert "four estimated" in told and "two checks" in told
 
