@@ -1,9 +1,8 @@
-"""Solution of a net of legs for many current profiles, with the compiled search of
-`calm.solve.leg_marches`.
+"""Solution of a net of legs for many current profiles, with compiled code.
 
-The search for each profile starts from the net in still water or, if there is no equilibrium in
-still water, from the net in the current of its file. If the search fails, or if the seabed is a
-depth grid, the profile is solved as in `calm run`.
+The starting point of each search is the net in still water. If still water gives no equilibrium,
+the starting point is the net in the current of the file. If a search fails or the seabed is a depth
+grid, the profile is solved as in `calm run`.
 """
 
 from concurrent.futures import ThreadPoolExecutor
@@ -55,8 +54,8 @@ class NetRows(NamedTuple):
     ----------
     pieces : (n, p, 12) position [m] and force [N] at the upper end of each piece, then at the lower
         end
-    clamps : (n, c, 7) position [m], sum of the forces above and below the clamp, and the larger of
-        these two forces [N]
+    clamps : (n, c, 7) position [m], sum of the forces above and below the clamp [N], and the larger
+        of the two [N]
     shares : (n, l) used fraction of the buoyancy of the float at the upper end of each leg
     """
 
@@ -74,7 +73,7 @@ class NetArrays(NamedTuple):
     start, slopes, scale : unknowns of the net at the starting point, their Jacobian and their
         scales
     x : work array for the unknowns
-    piece, clamp : row of the first piece and of the first clamp of each leg in `NetRows`
+    piece, clamp : row in `NetRows` of the first piece and of the first clamp of each leg
     weight : weight of the anchor of each leg [N]; inf for a leg without an anchor
     """
 
@@ -106,9 +105,8 @@ def solve_net_rows(
     Parameters
     ----------
     step : angle step [rad]
-    depth : (1 or n, k) depth of the levels [m]
-    u, v, w : (n, k) current [m/s]; NaN for missing values
-    endings : (n,) outcome of each profile; a profile whose outcome is not 0 on entry is skipped
+    depth, u, v, w : levels [m] and current [m/s], as in `calm.batch.solving.solve_rows`
+    endings : (n,) outcome of each profile; profiles with an outcome other than 0 are skipped
     """
     for case in range(endings.size):
         if endings[case] != 0:
@@ -251,9 +249,8 @@ class NetProfiles:
     def solve(
         self, current: tuple[Floats, ...], status: NDArray[np.int8], workers: int
     ) -> dict[str, Floats]:
-        """Solve profiles, and return the result columns by name.
-
-        A profile whose status is not 0 is skipped. For the other profiles, `status` is updated.
+        """Solve the profiles with status 0; set their status, and return the result columns by
+        name.
 
         Parameters
         ----------

@@ -50,16 +50,15 @@ _STILL = CurrentTable((0.0,), (0.0,), (0.0,), (0.0,))
 
 
 class Profiles(Columnar):
-    """Results of a mooring for n profiles.
+    """Results of a mooring for n profiles, with NaN for a profile whose `status` is not 0.
 
-    The values of a profile are NaN unless its `status` is 0. If the currents were given in arrays
-    with more dimensions, these dimensions replace n. Depths, offsets and knockdown are in m,
-    tensions and forces in N, tilt in degrees. The p components are in the order of the file, with
-    the anchor last, and the m clamps are listed down the line.
+    Depths, offsets and knockdown are in m, tensions and forces in N, tilt in degrees. The p
+    components are in the order of the file, with the anchor last; the m clamps are listed down the
+    line. Currents given with more dimensions replace n by these dimensions.
 
-    Further attributes are the batch columns, which `Profiles.columns` lists. Columns of
-    `Components` have the shape (n, p), and columns of `Clamps`, such as ``clamp_depth``, have the
-    shape (n, m). Values at the ends of the line have the shape (n,), or (n, l) for a net of l legs.
+    `Profiles.columns` lists further attributes. Columns of `Components` have the shape (n, p), and
+    columns of `Clamps`, such as ``clamp_depth``, the shape (n, m). Values at the ends of the line
+    have the shape (n,), or (n, l) for a net of l legs.
 
     Attributes
     ----------
@@ -162,19 +161,17 @@ def solve_profiles(
 ) -> Profiles:
     """Solve a mooring for many current profiles.
 
-    Each profile replaces the current of the file; everything else, such as density and wind, stays
-    the same. The results of a profile depend neither on other profiles nor on `workers`, not even
-    in the last bit. The results agree with `calm run` to 1e-4 of the water depth and 2e-4 of the
+    Each profile replaces the current of the file. The results of a profile depend neither on other
+    profiles nor on `workers`. They agree with `calm run` to 1e-4 of the water depth and 2e-4 of the
     tension.
 
     Parameters
     ----------
-    u, v, w : (..., k) current to the east, to the north and upward [m/s]; w is 0
-        by default. Levels with NaN and levels above the surface are ignored. The current is linear
-        between levels, and constant above the first and below the last. Instead of the arrays, `u`
-        may be a record of currents that `calm batch` can read: a path, an `xarray.Dataset`, or a
-        `pandas.DataFrame` with the columns of a CSV file. The profiles of a record are in
-        chronological order.
+    u, v, w : (..., k) current to the east, to the north and upward [m/s]; w is 0 by default. Levels
+        with NaN and levels above the surface are ignored. The current is linear between levels, and
+        constant above the first and below the last. Instead of arrays, `u` may be a record of
+        currents: a path, an `xarray.Dataset`, or a `pandas.DataFrame` with the columns of a CSV
+        file
     depth : depths of the levels, in any order, with the shape (k,) or the shape of u [m]
     workers : number of threads; by default one per available processor
 
@@ -255,7 +252,7 @@ class Batch:
         Returns
         -------
         The profiles, and the derivatives (n, m + p, 2 k) of the depths of clamps and components
-        with respect to u and v at each level [s]; NaN for a profile without an equilibrium.
+        with respect to u and v at each level [s]. The derivatives are NaN without an equilibrium.
         """
         _, current = _checked(u, v, depth, None)
         return self._solve_alone(self.mooring.moored, current, 1, 2 * current[1].shape[1])
