@@ -1,19 +1,13 @@
 """Attribution of a mooring's knockdown and excursion to the drag of each part.
 
 Let y(λ₁ … λ_p) be the quantity to explain, such as the knockdown, of the line with drag i
-multiplied by λ_i. The share of drag i is its Aumann–Shapley value,
+multiplied by λ_i. The share of drag i in y is its Aumann–Shapley value,
 
     share_i = ∫₀¹ ∂y/∂λ_i (s, …, s) ds
 
-All drags increase together from zero to full size. At every stage, each drag is attributed the
-change that its own increase causes. The shares add up to y(1 … 1) − y(0 … 0). Among the rules with
-this property, the Aumann–Shapley value is the only rule that is independent of the division of the
-line into components and attributes zero to a drag without effect (Billera & Heath, Mathematics of
-Operations Research 7, 1982). Removing one component at a time does not work: the differences do not
-add up, since drags interact.
-
-If drags are proportional to the square of the speed, the stage s = t² is equivalent to a current
-multiplied by t.
+The shares add up to y(1 … 1) − y(0 … 0), do not depend on the division of the line into components,
+and are zero for a drag without effect. No other rule has these three properties (Billera & Heath,
+Mathematics of Operations Research 7, 1982).
 """
 
 from collections.abc import Callable, Sequence
@@ -63,19 +57,17 @@ Varied = Callable[[int, Line], Floats]
 
 @dataclass(frozen=True)
 class Attribution:
-    """Contributions of the drag of each of p pieces and clamped instruments.
+    """Contributions of the drags of p pieces and clamped instruments to the shape of a line.
 
     The columns of `start` and `shares` are the depth and the excursion of a point of the line [m],
     and the used fraction of the surface float's buoyancy.
 
     Attributes
     ----------
-    parts : leg, piece and clamp on which each drag acts; the clamp is -1 if the drag acts on the
-        piece
+    parts : leg, piece and clamp on which each drag acts; the clamp is -1 for the piece itself
     start : (3,) values without drag, or with the smallest drag
     shares : (p, 3) contribution of each drag; the sum over the drags is the total change
-    miss : (3,) relative error of these sums before the contributions were scaled to the total
-        change
+    miss : (3,) relative error of these sums before scaling to the total change
     """
 
     parts: list[SolverPart]
@@ -95,11 +87,10 @@ def attribute(
     Parameters
     ----------
     lines : lines of the legs, or a single line
-    near : function that takes lines and returns a second function, which starts from the solutions
-        for these lines; the second function solves a variant of one line and returns the (3,)
-        values at the point
-    start : (3,) values without drag, in the columns of `Attribution`; None if the line has no
-        unique shape without drag, in which case the shares begin at `LEAST_DRAG`
+    near : function that solves these lines and returns a second function. The second function
+        solves a variant of one line and returns the (3,) values at the point
+    start : (3,) values without drag; None if the line has no unique shape without drag. The shares
+        then begin at `LEAST_DRAG`
     whole : (3,) values with full drag
 
     Raises

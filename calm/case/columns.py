@@ -1,7 +1,7 @@
 """Definition of a result column: title, unit, description, computation and outputs.
 
-`calm.case.result_tables` has one entry for each column. Tables, JSON, CSV, NetCDF, batches, the
-builder and the manual use these entries, so a new entry appears in every output that it names.
+`calm.case.result_tables` has one entry for each column, which appears in every output named in the
+entry.
 """
 
 from __future__ import annotations
@@ -50,9 +50,7 @@ _LAST = 1000
 class ResultColumn:
     """A column of a result table.
 
-    Each column is computed by one of four functions. `of_part` reads the piece or clamp of the
-    file. `found` reads the arrays of a solved line; `at_anchor` then supplies the row of the
-    anchor. `derived` combines earlier columns. `of_row` is called when an output shows a row.
+    At most one of the functions `of_part`, `found`, `derived` and `of_row` computes the column.
 
     Attributes
     ----------
@@ -64,10 +62,10 @@ class ResultColumn:
     of_part : returns the value for a piece or clamp of the file
     found : returns the values (n,) from `LineFigures`, `ClampFigures` or `NodeFigures`
     at_anchor : returns the value for the anchor from a `LineEnd`, or for a clamp on the anchor from
-        an `OnAnchor`
-    derived : returns the values (…, n) from a namespace that contains the earlier columns and, as
-        `part`, the n pieces or clamps
-    of_row : returns the value from a row and the mooring file; no table stores this value
+        an `OnAnchor`; supplements `found`
+    derived : returns the values (…, n) from a namespace of earlier columns, with the n pieces or
+        clamps as `part`
+    of_row : returns the value from a row and the mooring file, for outputs only
     worst : selects the value shown in the builder if several pieces share a row
     place : rank from the left in printed tables; columns without a rank come last
     attributes : additional attributes of the NetCDF variable
@@ -137,9 +135,9 @@ def column(
     Parameters
     ----------
     description, outputs, more : attributes of the `ResultColumn`
-    title, unit, decimals : title, unit and decimals of the quantity. Without `unit`, the quantity
-        is the entry of `QUANTITIES` that has the name of the field, and `title` replaces the
-        heading of this entry. If there is no such entry, the column is text.
+    title, unit, decimals : properties of the quantity. Without `unit`, the quantity is the entry of
+        `QUANTITIES` with the name of the field, and `title` replaces its heading; without such an
+        entry, the column is text
     in_repr : whether the `repr` of a row includes the field
     default : default value of the field
     """

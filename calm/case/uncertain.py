@@ -1,7 +1,6 @@
 """Uncertainty of a mooring's results, from solutions for many random draws of its inputs.
 
-Every sample is solved with the segments of the original mooring, or from scratch if this search
-finds no equilibrium of the same kind. Each sample must pass every check of a solution.
+Every sample passes every check of a solution.
 """
 
 from __future__ import annotations
@@ -52,17 +51,15 @@ class Uncertain:
     ----------
     result : result of the original mooring
     samples, seed : size and seed of the random sequence
-    failures : number of samples without equilibrium, by status; all other values are for the
-        remaining samples
+    failures : number of samples without equilibrium, by status; other values exclude these samples
     depth_top, knockdown, tilt, tension : (3, p) values of the p pieces, with the anchor last [m],
         [m], [degrees], [N]; knockdown is NaN if the line has no unique shape in still water
     offset : (3, p) horizontal distance of the top of each piece from the anchor, in the direction
         of the free end [m]
-    clamps : (3, 4, m) depth, knockdown, tilt and tension of the m clamps above the anchor, in the
-        same units
+    clamps : (3, 4, m) depth, knockdown, tilt and tension of the m clamps above the anchor
     anchor_tension, required_weight : (3,) anchor tension and required anchor weight [N]
-    contributions : contributions of the inputs to the variance of the top's knockdown or, for a
-        top at the surface, of the top's excursion; empty if there is no variance
+    contributions : contributions of the inputs to the variance of the top's knockdown; of the top's
+        excursion for a surface mooring or an unknown knockdown; empty without variance
     unexplained : fraction of this variance that the fit does not explain
     """
 
@@ -143,10 +140,9 @@ def uncertain(
     ----------
     result : result of a mooring; `uncertainty` in its file defines the distributions of the inputs
     samples : a power of two from `FEWEST` to `MOST`
-    seed : seed of the scrambling; the same seed gives the same results
+    seed : seed of the scrambling
     mapped : function that applies the solver to blocks of samples, like `map`
-    normals : function that returns `normals_of(samples, seed)`; another process may have computed
-        the numbers
+    normals : function that returns `normals_of(samples, seed)`
 
     Raises
     ------
@@ -244,12 +240,11 @@ FEWEST = 4
 
 @dataclass(frozen=True)
 class Indices:
-    """Sobol' indices: fractions of a quantity's variance that each input explains.
+    """Sobol' indices: fractions of a quantity's variance that each of k inputs explains.
 
     Attributes
     ----------
-    first : (k,) first-order index of each input
-    total : (k,) total index of each input
+    first, total : (k,) first-order index and total index of each input
     unexplained : fraction that no term of the fit explains
     """
 
@@ -261,17 +256,16 @@ class Indices:
 def sobol_indices(normals: Floats, values: Floats) -> Indices | None:
     """Estimate the Sobol' indices of a quantity from samples, by a fit of Hermite polynomials.
 
-    A quantity y of independent standard normal inputs z is expanded as y = Σ c_a ψ_a(z), where the
-    ψ_a are products of normalised Hermite polynomials. These are orthonormal, so c_a² is the
-    contribution of a term to the variance. The sum over all terms of one input alone gives its
-    first-order index, and the sum over all terms that contain the input its total index. The
-    coefficients are found by least squares (Sudret, Reliability Engineering and System Safety 93,
-    2008, 964-979).
+    The quantity y of independent standard normal inputs z is fitted by y = Σ c_a ψ_a(z) with least
+    squares, where the ψ_a are products of normalised Hermite polynomials. The c_a² are
+    contributions to the variance (Sudret, Reliability Engineering and System Safety 93, 2008,
+    964-979). A first-order index sums the terms of one input alone; a total index sums all terms
+    that contain the input.
 
     Parameters
     ----------
-    normals : (n, k) independent standard normal inputs
-    values : (n,) values of the quantity for these inputs
+    normals : (n, k) inputs z
+    values : (n,) values of y
 
     Returns
     -------

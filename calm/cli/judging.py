@@ -25,10 +25,9 @@ class Drawing(NamedTuple):
 
     Attributes
     ----------
-    alone : whether the report is about one mooring and has all its pages; otherwise it has a
-        summary and one page for each mooring
+    alone : whether the report has all pages of one mooring, or one page for each of several
+        moorings
     full : with several moorings, whether a PDF with all pages is also written for each mooring
-    page_size : page size
     """
 
     alone: bool = True
@@ -84,12 +83,10 @@ def judge(
     drawn: Drawing | None,
     draws: tuple[int, int] | None,
 ) -> list[CheckedMooring]:
-    """Check designs.
+    """Check designs against the design rules.
 
-    Accepted findings must be valid on the day of the report, which is today by default.
-
-    With many moorings, each process solves, checks and draws whole moorings. With few moorings,
-    their environments are distributed over the processes.
+    Accepted findings must be valid on the day of the report. With many moorings, each process
+    checks and draws whole moorings; with few, the processes share the environments of a mooring.
 
     Parameters
     ----------
