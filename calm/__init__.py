@@ -32,6 +32,7 @@ __all__ = [
     "estimate_motion", "explain", "grid", "load", "locate", "size", "solve_profiles",
 ]  # fmt: skip
 
+# imported on first use, so that `import calm` is fast
 _HOMES = {
     "calm.batch.profiles": ("Profiles", "solve_profiles"),
     "calm.case": ("Design", "Result", "load"),

@@ -191,8 +191,8 @@ def nearest(text: str, known: Iterable[str]) -> str | None:
     """Return the name most similar to a text, or None if no name is similar.
 
     Names are compared by their words and numbers: for ``chain-g30-16``, ``chain-short-g30-16`` is
-    nearer than ``chain-g80-16``. Names that contain every word of the text also count as similar:
-    ``ADCP`` gives ``ADCP 450 m``.
+    nearer than ``chain-g80-16``. If no name has similar letters, a name that contains every word of
+    the text is similar: ``ADCP`` gives ``ADCP 450 m``.
     """
     given, names = text[:LONGEST_TEXT], list(known)
     wanted = _parts(given)

@@ -28,8 +28,6 @@ class Quantity:
         Meaning as one sentence, for the manual.
     decimals : int
         Number of decimals shown, in the displayed unit.
-    symbol : str
-        Symbol in formulas.
     display : str
         Usual display unit (a key of `_USUAL`), if this differs from `unit`.
     """
@@ -297,7 +295,7 @@ class MeasuredQuantity:
     standard_name, long_name, units : attributes of the variable in files written by CALM
     dimension : dimension of the unit, as in `calm.units`
     sought, usual : CF standard names, and common variable names, in input files
-    noise : standard deviation of the error of a good sensor, unless the user specifies a value
+    noise : default standard deviation of the error of a good sensor
     """
 
     archive: str

@@ -54,7 +54,7 @@ class Profiles(Columnar):
 
     Depths, offsets and knockdown are in m, tensions and forces in N, tilt in degrees. The p
     components are in the order of the file, with the anchor last; the m clamps are listed down the
-    line. Currents given with more dimensions replace n by these dimensions.
+    line. If the currents were given with more dimensions, these dimensions replace n.
 
     `Profiles.columns` lists further attributes. Columns of `Components` have the shape (n, p), and
     columns of `Clamps`, such as ``clamp_depth``, the shape (n, m). Values at the ends of the line

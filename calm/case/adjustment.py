@@ -48,7 +48,6 @@ class Adjustment:
     to : function that returns the mooring for a new value of the parameter
     bounded : whether the user may not go below the lower end of `range`
     whole : whether the value must be a whole number
-    note : remark for the user
     """
 
     text: str
@@ -220,7 +219,6 @@ def parse_change(text: str, file: MooringFile) -> Adjustment:
     ----------
     text : a label, a full stop, and ``buoyancy``, ``length`` or ``count``. The label ``glass`` also
         stands for ``glass 1``, ``glass 2`` and so on. For a count, the label may name an assembly
-    file : the mooring that has the label
 
     Raises
     ------

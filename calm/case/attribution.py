@@ -25,8 +25,8 @@ from calm.solve.mooring import Nearby
 from calm.solve.net import NearbyNet
 
 STAGES = (4, 8)
-"""Numbers of Gauss points in t. The second number is used if the first leaves an error above
-`LARGEST_MISS`.
+"""Numbers of Gauss points of the integral over the drag. The second number is used if the first
+leaves an error above `LARGEST_MISS`.
 """
 LARGEST_MISS = 0.01
 LEAST_DRAG = 1e-3
@@ -45,8 +45,8 @@ end.
 
 
 SolverPart = tuple[int, int, int]
-"""Place of a part in the solver: number of its leg (0 for a single line), index of its piece, and
-index of its clamp or -1.
+"""Position of a part for the solver: number of the leg (0 for a single line), index of the piece,
+and index of the clamp or -1.
 """
 
 Varied = Callable[[int, Line], Floats]
@@ -152,7 +152,9 @@ def _integral(
     least: float,
     stages: int,
 ) -> Floats:
-    """Compute (p, 3) ∫ ∂y/∂λ ds from `least` to 1, with s = t² and ∂y/∂λ = (∂y/∂ln λ)/s."""
+    """Compute the contributions (p, 3), ∫ ∂y/∂λ ds from `least` to 1, with s = t² and ∂y/∂λ =
+    (∂y/∂ln λ)/s.
+    """
     abscissae, weights = np.polynomial.legendre.leggauss(stages)
     low = np.sqrt(least)
     half = 0.5 * (1.0 - low)

@@ -136,10 +136,9 @@ def column(
     ----------
     description, outputs, more : attributes of the `ResultColumn`
     title, unit, decimals : properties of the quantity. Without `unit`, the quantity is the entry of
-        `QUANTITIES` with the name of the field, and `title` replaces its heading; without such an
+        `QUANTITIES` with the name of the field, under the heading `title` if given. Without such an
         entry, the column is text
     in_repr : whether the `repr` of a row includes the field
-    default : default value of the field
     """
 
     def named(name: str, prefix: str) -> ResultColumn:

@@ -390,7 +390,6 @@ class Result:
     miss : largest distance of an end from its required position [m]; for one leg, the vertical
         distance
     closure : relative force residual, recomputed from the final coordinates
-    accuracy : error estimates of the solver
     nodes : positions of the nodes of a net
     notebook_form, netcdf_form, plot_form : functions that convert a result to HTML, NetCDF and
         pictures; packages that import this one set them

@@ -145,9 +145,9 @@ def drawn_water(water: Water, draw: Draw) -> Water:
 
 
 class Neighbours(NoMemory):
-    """Solver for moorings that differ little from a solved one.
+    """Solver for moorings that differ little from a solved mooring.
 
-    Each search starts from the known equilibrium; if this fails, the mooring is solved from
+    Each search starts from the known equilibrium; if the search fails, the mooring is solved from
     scratch.
     """
 

@@ -71,7 +71,6 @@ class Explanation:
 
     Attributes
     ----------
-    label : label of the explained piece or clamp
     quantities : explained quantities, as columns of `causes`: excursion, with the knockdown if the
         line has a unique shape in still water, or with the used buoyancy of a surface float
     figures : values of the original mooring
@@ -79,7 +78,6 @@ class Explanation:
     causes : contributions of the drags; None if unknown
     miss : largest relative error of the sums of contributions before scaling
     changes : results for more buoyancy, less drag, and more and less current
-    notes : remarks for the user
     """
 
     label: str

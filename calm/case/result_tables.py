@@ -186,8 +186,8 @@ def _known(value: Any) -> Any:
 
 
 class LineEnd(NamedTuple):
-    """Input for the row of an anchor: the row above it, the piece of the anchor, and the water
-    depth [m].
+    """Input for the row of an anchor: the row above the anchor, the piece of the anchor, and the
+    water depth [m].
     """
 
     above: ComponentRow

@@ -38,7 +38,7 @@ class Trial:
     value : value of the parameter, in the unit of the adjustment
     measured : value of the target's quantity, in SI units or degrees; None without an equilibrium
     failure : reason why there is no equilibrium
-    place : place of the part whose depth and excursion are reported; by default the top of the line
+    place : part whose depth and excursion are reported; by default the top of the line
     """
 
     value: float

@@ -45,7 +45,6 @@ class Target:
 
     Attributes
     ----------
-    text : the original text
     quantity : one of `QUANTITIES`
     label, place : label and place of the part; None for the top of the line and for the required
         anchor weight. In a net, the `label` of the required anchor weight is the name of the leg
@@ -87,7 +86,6 @@ def parse_target(text: str, file: MooringFile) -> Target:
     text : a quantity, the label of a part in brackets (by default ``top``), a relation, and a limit
         with its unit. In a net with several anchors, the brackets of the required weight name a
         leg: ``required_weight(stem) <= 8 kN``
-    file : mooring that has the labels
 
     Raises
     ------

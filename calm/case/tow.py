@@ -20,9 +20,9 @@ def at_speed(tow: Design, speed: float) -> Design:
 
 
 def sweep(tow: Design, speeds: Iterable[float]) -> list[Result | NoEquilibrium]:
-    """Solve a tow at several ship speeds > 0 [m/s]; without equilibrium, the item is the reason.
+    """Solve a tow at several ship speeds > 0 [m/s].
 
-    The speed in the file only determines the length of a fitted cable. Raises NoEquilibrium if no
-    length of this cable reaches the required depth at the speed in the file.
+    The item for a speed without equilibrium is the reason. Raises NoEquilibrium if the tow has a
+    fitted cable that cannot reach the required depth at the speed in the file.
     """
     return [or_why_not(at_speed(tow, speed).solve) for speed in speeds]

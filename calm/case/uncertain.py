@@ -49,7 +49,6 @@ class Uncertain:
 
     Attributes
     ----------
-    result : result of the original mooring
     samples, seed : size and seed of the random sequence
     failures : number of samples without equilibrium, by status; other values exclude these samples
     depth_top, knockdown, tilt, tension : (3, p) values of the p pieces, with the anchor last [m],
@@ -140,7 +139,6 @@ def uncertain(
     ----------
     result : result of a mooring; `uncertainty` in its file defines the distributions of the inputs
     samples : a power of two from `FEWEST` to `MOST`
-    seed : seed of the scrambling
     mapped : function that applies the solver to blocks of samples, like `map`
     normals : function that returns `normals_of(samples, seed)`
 

@@ -196,6 +196,7 @@ def stopped_by_a_signal(
         raise KeyboardInterrupt
 
     def stopping(now: Progress) -> None:
+        # Python ignores an exception raised by a handler during the callback of a weak reference
         if came:
             raise KeyboardInterrupt
         progress(now)

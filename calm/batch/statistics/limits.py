@@ -229,7 +229,7 @@ class RuleShare:
 def equilibrium_share(ended: Mapping[Ending, int]) -> RuleShare:
     """Compute the fraction of profiles without equilibrium.
 
-    Profiles that did not converge are left out of this fraction.
+    The fraction excludes profiles that did not converge.
     """
     without = ended[Ending.NO_EQUILIBRIUM]
     judged = ended[Ending.SOLVED] + without
@@ -286,7 +286,7 @@ def _rule_share(
 def _exceedance(
     series: ResultColumns, limit: CountedLimit, beyond: NDArray[np.bool_], judged: NDArray[np.bool_]
 ) -> Exceedance:
-    """Compute how often a limit is exceeded. Profiles that exceed it are marked in `beyond`,
+    """Compute how often a limit is exceeded. Profiles beyond the limit are marked in `beyond`,
     profiles with a value in `judged`.
     """
     if limit.criterion.limit is None:

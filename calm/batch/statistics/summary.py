@@ -70,8 +70,8 @@ class Response:
     Attributes
     ----------
     distribution : distribution over the profiles; None if there are no values
-    begin, low, high : start, minimum and maximum of each time interval in the plot; NaN for
-        extremes without values
+    begin, low, high : start, minimum and maximum of each time interval in the plot; minimum and
+        maximum are NaN without values
     return_levels : return levels by GEV and by POT
     """
 
@@ -359,7 +359,6 @@ class Distribution:
 
     Attributes
     ----------
-    count : n
     percentiles : values at `PERCENTILES`; the p quantile has the rank 1 + (n - 1) p (definition 7
         of Hyndman and Fan 1996)
     maximum, time : the maximum, and its first time
