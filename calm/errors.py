@@ -80,7 +80,7 @@ class NoEquilibrium(CalmError):
     status : str
         One of the statuses of the result format, e.g. ``"no-equilibrium"``, ``"slack"``.
     message, advice : str
-        The reason, with values, and a change that the user can try.
+        The reason, and a change that the user can try.
     piece : int, optional
         Index of the affected piece, whose name replaces ``{piece}`` in the message.
     """
@@ -190,9 +190,9 @@ def not_among(name: str, text: str, allowed: Iterable[str], offer: str | None = 
 def nearest(text: str, known: Iterable[str]) -> str | None:
     """Return the name most similar to a text, or None if no name is similar.
 
-    Names are compared by their words and numbers: for ``chain-g30-16``, ``chain-short-g30-16`` is
-    nearer than ``chain-g80-16``. If no name has similar letters, a name that contains every word of
-    the text is similar: ``ADCP`` gives ``ADCP 450 m``.
+    Words and numbers count: for ``chain-g30-16``, ``chain-short-g30-16`` is nearer than
+    ``chain-g80-16``. If no name has similar letters, a name with every word of the text is similar:
+    ``ADCP`` gives ``ADCP 450 m``.
     """
     given, names = text[:LONGEST_TEXT], list(known)
     wanted = _parts(given)

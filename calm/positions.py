@@ -26,17 +26,14 @@ def degrees_of(text: str, what: str) -> float | None:
     """Parse a latitude or longitude [degrees], negative for south and west.
 
     Texts such as ``57 28.84 N``, ``57°28.84'N``, ``57-28.84N``, ``-5 12 30`` or ``5.2 W`` are
-    accepted. Return None for other texts, such as a plain number.
-
-    Parameters
-    ----------
-    what : ``latitude`` or ``longitude``
+    accepted. Return None for other texts, such as a plain number. `what` is ``latitude`` or
+    ``longitude``.
 
     Raises
     ------
     ValueError
         The text has minutes or seconds of 60 or more, a fraction before the last part, a sign and a
-        hemisphere, two hemispheres, or a hemisphere of the other coordinate.
+        hemisphere, or a wrong hemisphere.
     """
     found = _POSITION.fullmatch(text.strip())
     if found is None:

@@ -23,7 +23,7 @@ class Quantity:
     heading : str
         Short title of a column or an axis, without the unit.
     unit : str
-        Unit of the value in results: an SI unit or degrees; empty for a pure number.
+        Unit in results: an SI unit or degrees; empty for a pure number.
     meaning : str
         Meaning as one sentence, for the manual.
     decimals : int

@@ -1,8 +1,7 @@
 """Convert text such as `12 mm` to SI numbers.
 
-A mass is never accepted as a force: instead of `35 kg`, the user must write `35 kgf`. One
-kilogram-force is 9.80665 N at every location. Units that are not in the table below are converted
-by pint.
+A mass is never accepted as a force: `35 kg` must be `35 kgf`. One kilogram-force is 9.80665 N at
+every location. Pint converts units that are not in the table below.
 """
 
 from __future__ import annotations
@@ -145,7 +144,7 @@ class QuantityError(ValueError):
     complaint : str
         The fault, worded to follow the invalid text, such as "needs a unit".
     suggestion : str or None
-        The corrected text, if a correction is known.
+        The corrected text, if known.
     is_other : bool
         Whether the text is a quantity of another dimension.
     """
@@ -165,8 +164,8 @@ def parse_quantity(text: object, dimension: str, *, usual_unit: str | None = Non
     Parameters
     ----------
     text : str or float
-        A text such as ``"12 mm"``, ``"1/2 in"`` or ``"1.5e3 N"``. Zero, and values of the dimension
-        ``number``, need no unit. For latitudes and longitudes, see `calm.positions`.
+        A text such as ``"12 mm"``, ``"1/2 in"`` or ``"1.5e3 N"``. Zero and plain numbers need no
+        unit. For latitudes and longitudes, see `calm.positions`.
     dimension : str
         A key of `DIMENSIONS`.
     usual_unit : str, optional
@@ -292,17 +291,8 @@ def unit_factor(text: str, dimension: str) -> float:
 def unit_line(text: str, wanted: str) -> tuple[float, float]:
     """Return the factor and offset that convert a value x to another unit: ``factor * x + offset``.
 
-    The units include temperature scales.
-
-    Parameters
-    ----------
-    text : original unit, such as ``"K"`` or ``"S m-1"``
-    wanted : target unit, as pint writes it
-
-    Raises
-    ------
-    QuantityError
-        The unit is unknown, or has another dimension than `wanted`.
+    The units, such as ``"K"`` or ``"S m-1"``, include temperature scales; `wanted` is written as by
+    pint. Raises QuantityError if the unit is unknown or has another dimension than `wanted`.
     """
     registry = _registry()
     plain = text.rpartition(",")[2].strip()  # `ITS-90, deg C`

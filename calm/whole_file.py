@@ -56,16 +56,9 @@ def put(
 ) -> None:
     """Write the content of a whole file; callers must resolve symbolic links first.
 
-    Parameters
-    ----------
-    like : file status from which the permissions and, if allowed, the owner are copied
-    durable : whether the file must survive a loss of power
-
-    Raises
-    ------
-    OSError
-        The file could not be written, for example because the disk is full; the old file is
-        unchanged.
+    The permissions and, if allowed, the owner are those of the file status `like`. A `durable` file
+    survives a loss of power. Raises OSError if the file could not be written; the old file is then
+    unchanged.
     """
     with beside(target) as part:
         part.write_bytes(content)

@@ -40,8 +40,8 @@ def on_cluster(
     Raises
     ------
     UsageError
-        The scheduler does not answer or is lost, CALM is not installed on the workers, or the
-        workers of one block are lost repeatedly.
+        The scheduler does not answer, CALM is not installed on the workers, or the connection is
+        lost.
     """
     from distributed import CancelledError, Client, KilledWorker
 

@@ -1,8 +1,8 @@
 """Solution of a net of legs for many current profiles, with compiled code.
 
-The starting point of each search is the net in still water. If still water gives no equilibrium,
-the starting point is the net in the current of the file. If a search fails or the seabed is a depth
-grid, the profile is solved as in `calm run`.
+Each search starts from the net in still water or, without equilibrium in still water, in the
+current of the file. If the search fails or the seabed is a depth grid, the profile is solved as in
+`calm run`.
 """
 
 from concurrent.futures import ThreadPoolExecutor
@@ -54,9 +54,9 @@ class NetRows(NamedTuple):
     ----------
     pieces : (n, p, 12) position [m] and force [N] at the upper end of each piece, then at the lower
         end
-    clamps : (n, c, 7) position [m], sum of the forces above and below the clamp [N], and the larger
-        of the two [N]
-    shares : (n, l) used fraction of the buoyancy of the float at the upper end of each leg
+    clamps : (n, c, 7) position [m], sum of the forces above and below the clamp, and the larger of
+        the two [N]
+    shares : (n, l) used fraction of the buoyancy of the float at the top of each leg
     """
 
     pieces: Floats
@@ -70,11 +70,10 @@ class NetArrays(NamedTuple):
     Attributes
     ----------
     on, still : work arrays for a profile, and the water without current
-    start, slopes, scale : unknowns of the net at the starting point, their Jacobian and their
-        scales
+    start, slopes, scale : unknowns of the net at the starting point, Jacobian and scales
     x : work array for the unknowns
-    piece, clamp : row in `NetRows` of the first piece and of the first clamp of each leg
-    weight : weight of the anchor of each leg [N]; inf for a leg without an anchor
+    piece, clamp : first row in `NetRows` of the pieces and the clamps of each leg
+    weight : anchor weight of each leg [N]; inf without an anchor
     """
 
     on: solving.ProfileLevels
@@ -252,10 +251,8 @@ class NetProfiles:
         """Solve the profiles with status 0; set their status, and return the result columns by
         name.
 
-        Parameters
-        ----------
-        current : depth (1 or n, k) of levels [m], and u, v, w (n, k) at these levels [m/s]
-        status : (n,) status of each profile, as an index in `STATUSES`
+        The current has the depths (1 or n, k) of levels [m], and u, v, w (n, k) [m/s]. The `status`
+        (n,) of each profile is an index in `STATUSES`.
         """
         count, pieces = len(status), self.net.file.pieces
         shapes = (len(pieces), 12), (len(clamps_down(pieces)), 7), (len(self.net.legs),)

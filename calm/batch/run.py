@@ -56,7 +56,7 @@ def run_batch(
     UsageError
         The record has no profile, the result cannot be written, or the scheduler is not available.
     NoEquilibrium
-        A piece has a fitted length, but no length reaches the required depth.
+        No length of a fitted piece reaches the required depth.
     """
     if record.count == 0:
         raise UsageError("the record has no profile in the requested period")

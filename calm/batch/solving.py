@@ -115,7 +115,7 @@ class ProfileArrays(NamedTuple):
     on : work arrays for the levels of a profile
     may_lie : (p,) whether each piece may lie on the seabed in a sub-surface mooring
     depths : (3, m + p) depths of clamps and pieces, slopes of these depths with respect to the
-        searched unknown of the line, and depths in a changed current
+        searched unknown, and depths in a changed current
     """
 
     on: ProfileLevels
@@ -435,17 +435,14 @@ def between(table: Floats, count: int, k: int, depth: float, c: int) -> float:
 def lay_profile(
     read: Floats, count: int, fixed: Floats, levels: Any, intervals: Any, joined: Floats
 ) -> int:
-    """Merge a profile with the fixed levels, and write levels and intervals as in `Sea`.
+    """Merge a profile with the fixed levels, write levels and intervals as in `Sea`, and count the
+    levels.
 
     Parameters
     ----------
     read : depth, u, v, w of the profile's levels
     fixed : (f, 4) depth, addition to u and to v, density
     joined : receives depth, u, v, w, density of the merged levels
-
-    Returns
-    -------
-    Number of merged levels.
     """
     total = i = j = 0
     given = fixed.shape[0]

@@ -42,10 +42,10 @@ class Adjustment:
     ----------
     text : name of the parameter, e.g. ``top float.buoyancy``
     file, parts : the mooring and the changed parts, in their original state
-    dimension : dimension of the value, a key of `calm.units.DIMENSIONS`
+    dimension : a key of `calm.units.DIMENSIONS`
     now : value before the change
     range : default smallest and largest value
-    to : function that returns the mooring for a new value of the parameter
+    to : function that returns the mooring for a new value
     bounded : whether the user may not go below the lower end of `range`
     whole : whether the value must be a whole number
     """
@@ -215,15 +215,9 @@ _FIELDS = {"buoyancy": _buoyancy, "length": _length, "count": _count}
 def parse_change(text: str, file: MooringFile) -> Adjustment:
     """Parse the name of a parameter to vary, e.g. ``top float.buoyancy``.
 
-    Parameters
-    ----------
-    text : a label, a full stop, and ``buoyancy``, ``length`` or ``count``. The label ``glass`` also
-        stands for ``glass 1``, ``glass 2`` and so on. For a count, the label may name an assembly
-
-    Raises
-    ------
-    UsageError
-        The text is invalid; the message points to the mistake and suggests a correction.
+    The text has a label, a full stop, and ``buoyancy``, ``length`` or ``count``. The label
+    ``glass`` also stands for ``glass 1``, ``glass 2`` and so on. For a count, the label may name an
+    assembly. Raises UsageError, which points to the mistake, if the text is invalid.
     """
     text = " ".join(text.split())
     name, point, field = text.rpartition(".")
@@ -250,8 +244,8 @@ def parse_change(text: str, file: MooringFile) -> Adjustment:
 def parse_range(texts: tuple[str, str] | None, change: Adjustment) -> tuple[float, float]:
     """Parse the lower and upper end of a range, each with its unit.
 
-    Without texts, the result is the default range of the parameter. Raises UsageError if an end is
-    not allowed or the ends are in the wrong order.
+    The default is the range of the parameter. Raises UsageError if an end is not allowed or the
+    ends are in the wrong order.
     """
     if texts is None:
         low, high = change.range

@@ -59,14 +59,14 @@ Varied = Callable[[int, Line], Floats]
 class Attribution:
     """Contributions of the drags of p pieces and clamped instruments to the shape of a line.
 
-    The columns of `start` and `shares` are the depth and the excursion of a point of the line [m],
-    and the used fraction of the surface float's buoyancy.
+    Columns are the depth and the excursion of a point of the line [m], and the used fraction of the
+    surface float's buoyancy.
 
     Attributes
     ----------
     parts : leg, piece and clamp on which each drag acts; the clamp is -1 for the piece itself
     start : (3,) values without drag, or with the smallest drag
-    shares : (p, 3) contribution of each drag; the sum over the drags is the total change
+    shares : (p, 3) contributions, which add up to the total change
     miss : (3,) relative error of these sums before scaling to the total change
     """
 
@@ -87,10 +87,10 @@ def attribute(
     Parameters
     ----------
     lines : lines of the legs, or a single line
-    near : function that solves these lines and returns a second function. The second function
-        solves a variant of one line and returns the (3,) values at the point
-    start : (3,) values without drag; None if the line has no unique shape without drag. The shares
-        then begin at `LEAST_DRAG`
+    near : function that solves these lines and returns a second function, which returns the (3,)
+        values at the point for a variant of one line
+    start : (3,) values without drag; None if the shape without drag is not unique, so that the
+        shares begin at `LEAST_DRAG`
     whole : (3,) values with full drag
 
     Raises

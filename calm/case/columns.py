@@ -48,24 +48,21 @@ _LAST = 1000
 
 @dataclass(frozen=True)
 class ResultColumn:
-    """A column of a result table.
-
-    At most one of the functions `of_part`, `found`, `derived` and `of_row` computes the column.
+    """A column of a result table, computed by at most one of its functions.
 
     Attributes
     ----------
     name : name in Python and JSON
     quantity : title, unit and digits of a numeric column; None for text
     description : meaning, for the manual and the NetCDF `long_name`
-    outputs : outputs that show the column
     prefix : prefix of the name in NetCDF and batches
-    of_part : returns the value for a piece or clamp of the file
-    found : returns the values (n,) from `LineFigures`, `ClampFigures` or `NodeFigures`
-    at_anchor : returns the value for the anchor from a `LineEnd`, or for a clamp on the anchor from
+    of_part : function of the piece or clamp of the file
+    found : function of `LineFigures`, `ClampFigures` or `NodeFigures` that returns the values (n,)
+    at_anchor : function for the row of an anchor, of a `LineEnd` or, for a clamp on the anchor, of
         an `OnAnchor`; supplements `found`
-    derived : returns the values (…, n) from a namespace of earlier columns, with the n pieces or
-        clamps as `part`
-    of_row : returns the value from a row and the mooring file, for outputs only
+    derived : function of a namespace with the earlier columns and, as `part`, the n pieces or
+        clamps; returns the values (…, n)
+    of_row : function of a row and the mooring file, for outputs only
     worst : selects the value shown in the builder if several pieces share a row
     place : rank from the left in printed tables; columns without a rank come last
     attributes : additional attributes of the NetCDF variable
@@ -136,7 +133,7 @@ def column(
     ----------
     description, outputs, more : attributes of the `ResultColumn`
     title, unit, decimals : properties of the quantity. Without `unit`, the quantity is the entry of
-        `QUANTITIES` with the name of the field, under the heading `title` if given. Without such an
+        `QUANTITIES` with the name of the field, under the heading `title` if given. Without an
         entry, the column is text
     in_repr : whether the `repr` of a row includes the field
     """

@@ -1,7 +1,7 @@
 """Designs read from files, and the results of solving the designs.
 
-A mooring is one leg with a free top and an anchor; a tow is one leg held at the ship. The legs of a
-net join at nodes.
+A mooring is one leg with a free top and an anchor; a tow is one leg held at the ship; a net has
+several legs.
 """
 
 from __future__ import annotations
@@ -67,8 +67,7 @@ _SKIN = 1e-3  # m: thickness of the layer above the surface in which water turns
 class Design:
     """A mooring, a tow or a net of legs, as `calm.load` reads it from a file.
 
-    A design is immutable. `solve` finds the equilibrium; `with_` returns a changed copy;
-    `environment` and `legs` are the contents of the file::
+    A design is immutable. `solve` finds the equilibrium; `with_` returns a changed copy::
 
         design = calm.load("mooring.yaml")
         longer = design.with_("wire 1", length="480 m")
@@ -192,10 +191,9 @@ class Design:
 
         Parameters
         ----------
-        label : label of the piece or clamp to change; without a label, the keys are top-level keys
-            of the file
-        environment : name of an entry of `environments` in the file, an environment file, or
-            changed keys of the default environment
+        label : piece or clamp to change; by default, the keys are top-level keys of the file
+        environment : an entry of `environments` in the file, an environment file, or changed keys
+            of the default environment
 
         Raises
         ------
@@ -337,8 +335,8 @@ def solved_alone(leg: Leg) -> LegResult:
 def result_together(design: Design, found: NetSolution, still: Sequence[Solution | None]) -> Result:
     """Build the result of several legs that were solved together.
 
-    `still` has the solution of each leg in still water, or None for a leg with an unknown shape in
-    still water. Raises NoEquilibrium if a leg would lift its anchor or penetrate the slope.
+    `still` has the solution of each leg in still water, or None if unknown. Raises NoEquilibrium if
+    a leg would lift its anchor or penetrate the slope.
     """
     legs: list[LegResult] = []
     for leg, solution, before in zip(design.legs, found.legs, still, strict=True):
@@ -385,14 +383,13 @@ class Result:
 
     Attributes
     ----------
-    status : ``converged``
     iterations, segments : number of marches, and of segments of the final shape
     miss : largest distance of an end from its required position [m]; for one leg, the vertical
         distance
     closure : relative force residual, recomputed from the final coordinates
     nodes : positions of the nodes of a net
-    notebook_form, netcdf_form, plot_form : functions that convert a result to HTML, NetCDF and
-        pictures; packages that import this one set them
+    notebook_form, netcdf_form, plot_form : functions for HTML, NetCDF and pictures, set by packages
+        that import this one
     """
 
     design: Design
@@ -687,8 +684,8 @@ def load(
     ----------
     path : the YAML file
     environment : name of an entry of `environments` in the file, or an environment file
-    catalogs : additional catalogue files, whose definitions take precedence over the shipped ones
-    text : text that replaces the content of the file; paths in it remain relative to the file
+    catalogs : additional catalogue files, which take precedence over the shipped ones
+    text : text that replaces the content of the file; paths remain relative to the file
 
     Raises
     ------

@@ -1,7 +1,7 @@
 """Random draws of a mooring's uncertain inputs, and the mooring for each draw.
 
-The draws are a scrambled Sobol' sequence with one number for each uncertain input. An input has the
-same error everywhere in a draw: all cables are too long by the same factor, for example.
+The draws are a scrambled Sobol' sequence. An input has the same error everywhere in a draw: all
+cables are too long by the same factor, for example.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -75,8 +75,7 @@ def draws_of(uncertainty: Uncertainty, normals: Floats) -> list[Draw]:
     """Convert standard normal numbers (n, causes) to draws.
 
     A deviation in the file is the standard deviation of a normal distribution. A pair of values is
-    the 5th and 95th percentile of a normal distribution for an angle, and of a lognormal
-    distribution for a factor.
+    the 5th and 95th percentile of a normal (angle) or lognormal (factor) distribution.
     """
     columns = [
         (_angles if name == _ANGLE else _factors)(getattr(uncertainty, name), normals[:, i])

@@ -47,10 +47,9 @@ class Causes(ColumnTable[Cause]):
     Attributes
     ----------
     index : (p,) index of the piece, or of the piece that carries the clamp
-    clamped : (p,) whether the part is a clamp
     drag : (p,) horizontal drag force [N]
-    knockdown, excursion, used_buoyancy : (p,) contribution of the drag to these quantities of the
-        mooring [m], [m], [-]
+    knockdown, excursion, used_buoyancy : (p,) contribution of the drag to these quantities [m],
+        [m], [-]
     """
 
     record = Cause
@@ -72,7 +71,7 @@ class Explanation:
     Attributes
     ----------
     quantities : explained quantities, as columns of `causes`: excursion, with the knockdown if the
-        line has a unique shape in still water, or with the used buoyancy of a surface float
+        shape in still water is unique, or with the used buoyancy of a surface float
     figures : values of the original mooring
     without_drag : contribution to each quantity that is not caused by drag
     causes : contributions of the drags; None if unknown
@@ -118,12 +117,9 @@ def _change_document(change: WhatIf) -> dict[str, Any]:
 def explain(result: Result, label: str | None = None) -> Explanation:
     """Explain the knockdown and excursion of a mooring or a net of legs.
 
-    The mooring is also solved with changed inputs, in which a fitted piece keeps its length.
-
-    Parameters
-    ----------
-    label : label of the clamp, or of the piece whose upper end is explained. The default is the
-        free end, in a net the free end of the first leg that has one
+    The mooring is also solved with changed inputs, in which a fitted piece keeps its length. The
+    `label` selects a clamp, or a piece whose upper end is explained. The default is the free end,
+    in a net the first free end.
 
     Raises
     ------

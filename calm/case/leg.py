@@ -43,7 +43,7 @@ class Leg:
     file : file with this leg only, pieces from the upper end. The last piece is the anchor or a
         stand-in with the id `STAND_IN`, except in a tow
     for_surface : whether the leg is designed to reach the surface; None to determine this from the
-        leg. Modified copies of a leg keep the value
+        leg
     memory : cache of solutions for earlier versions of the file and other environments
     given_line, given_water : replacements for the line and the water of the file
     """

@@ -38,8 +38,6 @@ class LegResult:
 
     Attributes
     ----------
-    leg : the solved leg
-    solution : solution for the line of the leg
     still : solution in still water; None if the shape in still water is not unique
     profilers : results for each profiler at several positions; in all other results, profilers are
         at their upper stops
@@ -205,10 +203,8 @@ class LegResult:
 
     @property
     def other_equilibrium(self) -> dict[str, float] | None:
-        """Depth of the free end and other values of a second equilibrium; None if none was found.
-
-        For a mooring, these include the length on the seabed, the used fraction of the buoyancy,
-        and the anchor load.
+        """Values of a second equilibrium, such as the depth of the free end; None if none was
+        found.
         """
         if self.other is None:
             return None

@@ -26,8 +26,7 @@ class LineFigures:
     solution, still : solutions in the current and in still water; `still` is needed for the
         knockdown
     pieces : (n,) pieces of the file; needed for `index` and `reynolds` only
-    upper, lower : (n,) indices of the nodes at the ends of each piece. The upper end is listed
-        first in the file
+    upper, lower : (n,) indices of the nodes at the ends of each piece, in the order of the file
     top, bottom : (n, 3) positions of these nodes: east, north, up [m]
     """
 
@@ -100,7 +99,7 @@ class LineFigures:
         [degrees].
 
         A piece without length has the angle of the tension. The pieces at the head of the line form
-        one rod and share the tilt of this rod.
+        one rod.
         """
         solution, chord = self.solution, self.top - self.bottom
         pull = solution.force[self.upper] + solution.force[self.lower]
@@ -139,7 +138,6 @@ class ClampFigures:
 
     Attributes
     ----------
-    clamps : (m,) clamps of the file
     index : (m,) index of the piece that carries each clamp
     position : (m, 3) east, north, up [m]
     """

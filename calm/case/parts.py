@@ -110,9 +110,9 @@ class Origin:
 
         Parameters
         ----------
-        label : label of the piece or clamp whose keys are changed; None to change keys of the file
+        label : piece or clamp whose keys are changed; None for keys of the file
         environment : name or path of another environment, or changed keys of the default
-            environment; None leaves the environment unchanged
+            environment; None for no change
         keys : names and values as in the file. None removes a key; a mapping changes only the keys
             that it contains
 

@@ -37,8 +37,8 @@ class ProfilerTravel:
     Attributes
     ----------
     distance : unstretched distance between the stops [m]
-    time : duration of a profile [s]; None if the speed is unknown
-    profiles : number of profiles per battery set; None if the endurance is unknown
+    time : duration of a profile [s]; None if unknown
+    profiles : number of profiles per battery set; None if unknown
     """
 
     label: str

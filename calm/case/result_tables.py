@@ -509,9 +509,8 @@ class Components(ColumnTable[ComponentRow]):
     """Table of the n pieces of the line, in file order. NaN stands for unknown values.
 
     A mooring is listed from the free end down, with the anchor last; a tow from the ship down. The
-    columns are the fields of `ComponentRow`. Lengths, depths and offsets are in m, tensions in N,
-    and `tilt` in degrees. x and y are distances to the east and north of the anchor or the tow
-    point; depths are positive down. `knockdown` is NaN in a tow.
+    columns are the fields of `ComponentRow`, in m, N and degrees. x and y are distances to the east
+    and north of the anchor or the tow point; depths are positive down. `knockdown` is NaN in a tow.
     """
 
     record = ComponentRow

@@ -37,7 +37,6 @@ class Trial:
     ----------
     value : value of the parameter, in the unit of the adjustment
     measured : value of the target's quantity, in SI units or degrees; None without an equilibrium
-    failure : reason why there is no equilibrium
     place : part whose depth and excursion are reported; by default the top of the line
     """
 
@@ -63,7 +62,7 @@ class Sizing:
     ----------
     range : smallest and largest value of the parameter
     status : ``met``, ``met-already`` (nothing to change) or ``not-met``
-    before : the original mooring, solved with the settings of the file
+    before : the original mooring
     after : the mooring with the smallest change that meets the target, or None
     message, advice : reason why the target is not met, and advice
     steady : whether the target's quantity is monotonic over the values tried
@@ -139,8 +138,8 @@ def size(
     ----------
     target : e.g. ``knockdown(top) <= 20 m``, see `calm.case.targets`
     change : e.g. ``top float.buoyancy``, see `calm.case.adjustment`
-    between : smallest and largest value, with units. By default a buoyancy may be 0 to 100 times
-        its present value, a length at most twice the water depth, and a count at most 1000
+    between : smallest and largest value, with units. By default: buoyancy 0 to 100 times the
+        present value, length at most twice the water depth, count at most 1000
 
     Raises
     ------

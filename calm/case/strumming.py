@@ -19,7 +19,7 @@ from calm.solve.audit import amplification, flow_across
 class Strumming:
     """Strumming of the cables: frequency [Hz], and range of the normal drag coefficient Cn.
 
-    All segments of a towed cable strum at the same `frequency`. For a mooring, `frequency` is the
+    All segments of a towed cable strum at one frequency. The `frequency` of a mooring is the
     highest shedding frequency of the cables.
     """
 
@@ -62,7 +62,6 @@ class StrummingBand:
     Attributes
     ----------
     factor : factor on Cn [-]
-    status : status of the solver
     depth : depth of the top of a mooring, or of a towed body [m]
     knockdown : knockdown of the top [m]; None for a tow, or if the shape in still water is not
         unique

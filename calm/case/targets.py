@@ -49,7 +49,7 @@ class Target:
     label, place : label and place of the part; None for the top of the line and for the required
         anchor weight. In a net, the `label` of the required anchor weight is the name of the leg
     relation : ``<=``, ``>=`` or ``=``
-    limit : limit, in SI units or degrees
+    limit : in SI units or degrees
     """
 
     text: str
@@ -81,16 +81,10 @@ class Target:
 def parse_target(text: str, file: MooringFile) -> Target:
     """Parse a target, e.g. ``tilt(current meter 2) <= 5 deg`` or ``required_weight <= 8 kN``.
 
-    Parameters
-    ----------
-    text : a quantity, the label of a part in brackets (by default ``top``), a relation, and a limit
-        with its unit. In a net with several anchors, the brackets of the required weight name a
-        leg: ``required_weight(stem) <= 8 kN``
-
-    Raises
-    ------
-    UsageError
-        The text is invalid; the message points to the mistake and suggests a correction.
+    The text has a quantity, the label of a part in brackets (by default ``top``), a relation, and a
+    limit with its unit. With several anchors, the required weight needs the name of a leg:
+    ``required_weight(stem) <= 8 kN``. Raises UsageError, which points to the mistake, if the text
+    is invalid.
     """
     text = " ".join(text.split())
     found = _FORM.fullmatch(text)
@@ -137,9 +131,8 @@ def parse_target(text: str, file: MooringFile) -> Target:
 def spot_of(result: Result, place: Place | None = None) -> dict[str, Any]:
     """Return depth, excursion and knockdown [m], tilt [degrees] and tension [N] of a part.
 
-    Depth, excursion and knockdown of a piece are those of its upper end; the tension is the maximum
-    in the piece. The knockdown is None if the shape in still water is not unique. The default part
-    is the top of the line.
+    For a piece, these are values at the upper end, but the maximum tension. The knockdown is None
+    if the shape in still water is not unique. The default part is the top of the line.
     """
     row: ComponentRow | ClampRow = result.components[0]
     if place is not None:
@@ -156,14 +149,15 @@ def spot_of(result: Result, place: Place | None = None) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Figures:
-    """Summary values of a solved mooring: lengths [m], forces [N].
+    """Summary values of a solved mooring: lengths [m], forces [N]. Anchor values are None without
+    an anchor.
 
     Attributes
     ----------
     depth, knockdown, excursion : values at the line's top or at another part
     used_buoyancy : used fraction of the surface float's buoyancy; 1 if the float is submerged
-    tension, vertical, horizontal : load on the anchor; None without an anchor
-    required_weight : required weight of the anchor; None without an anchor
+    tension, vertical, horizontal : load on the anchor
+    required_weight : required weight of the anchor
     """
 
     depth: float

@@ -47,17 +47,19 @@ class Contribution:
 class Uncertain:
     """Percentiles `LEVELS` of the results of a mooring with uncertain inputs.
 
+    The values are for samples with an equilibrium, of the p pieces with the anchor last.
+
     Attributes
     ----------
     samples, seed : size and seed of the random sequence
-    failures : number of samples without equilibrium, by status; other values exclude these samples
-    depth_top, knockdown, tilt, tension : (3, p) values of the p pieces, with the anchor last [m],
-        [m], [degrees], [N]; knockdown is NaN if the line has no unique shape in still water
+    failures : number of samples without equilibrium, by status
+    depth_top, knockdown, tilt, tension : (3, p) in m, m, degrees and N; knockdown is NaN if the
+        line has no unique shape in still water
     offset : (3, p) horizontal distance of the top of each piece from the anchor, in the direction
         of the free end [m]
     clamps : (3, 4, m) depth, knockdown, tilt and tension of the m clamps above the anchor
     anchor_tension, required_weight : (3,) anchor tension and required anchor weight [N]
-    contributions : contributions of the inputs to the variance of the top's knockdown; of the top's
+    contributions : contributions of the inputs to the variance of the top's knockdown; of its
         excursion for a surface mooring or an unknown knockdown; empty without variance
     unexplained : fraction of this variance that the fit does not explain
     """
@@ -137,7 +139,7 @@ def uncertain(
 
     Parameters
     ----------
-    result : result of a mooring; `uncertainty` in its file defines the distributions of the inputs
+    result : result of a mooring whose file defines the `uncertainty` of the inputs
     samples : a power of two from `FEWEST` to `MOST`
     mapped : function that applies the solver to blocks of samples, like `map`
     normals : function that returns `normals_of(samples, seed)`
@@ -254,16 +256,15 @@ class Indices:
 def sobol_indices(normals: Floats, values: Floats) -> Indices | None:
     """Estimate the Sobol' indices of a quantity from samples, by a fit of Hermite polynomials.
 
-    The quantity y of independent standard normal inputs z is fitted by y = Σ c_a ψ_a(z) with least
-    squares, where the ψ_a are products of normalised Hermite polynomials. The c_a² are
-    contributions to the variance (Sudret, Reliability Engineering and System Safety 93, 2008,
-    964-979). A first-order index sums the terms of one input alone; a total index sums all terms
-    that contain the input.
+    The fit is y = Σ c_a ψ_a(z), where the ψ_a are products of normalised Hermite polynomials. Each
+    c_a² contributes to the variance (Sudret, Reliability Engineering and System Safety 93, 2008,
+    964-979). The first-order index of an input sums the terms of this input alone, the total index
+    all terms with the input.
 
     Parameters
     ----------
-    normals : (n, k) inputs z
-    values : (n,) values of y
+    normals : (n, k) independent standard normal inputs z
+    values : (n,) values of the quantity y
 
     Returns
     -------

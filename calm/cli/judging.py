@@ -25,9 +25,8 @@ class Drawing(NamedTuple):
 
     Attributes
     ----------
-    alone : whether the report has all pages of one mooring, or one page for each of several
-        moorings
-    full : with several moorings, whether a PDF with all pages is also written for each mooring
+    alone : whether the report has all pages of one mooring, or one page per mooring
+    full : whether each of several moorings also has a PDF with all pages
     """
 
     alone: bool = True
@@ -86,13 +85,13 @@ def judge(
     """Check designs against the design rules.
 
     Accepted findings must be valid on the day of the report. With many moorings, each process
-    checks and draws whole moorings; with few, the processes share the environments of a mooring.
+    checks whole moorings; with few, the processes share the environments of a mooring.
 
     Parameters
     ----------
     workers : number of processes; None for one on each core
-    drawn : settings for the report; None without a report
-    draws : number of samples and seed for the probabilities; None without probabilities
+    drawn : settings for the report, if requested
+    draws : number of samples and seed for the probabilities, if requested
     """
     from calm.report.provenance import moment
 

@@ -202,7 +202,7 @@ class Outputs:
     Parameters
     ----------
     files : the input files, if the command has any
-    json : path of the JSON document, ``-`` for standard output; None if not requested
+    json : path of the JSON document, ``-`` for standard output
     written : further output files, whose suffixes select the formats
     suffixes : allowed suffixes of the further output files
     """

@@ -133,8 +133,7 @@ def mapped(
     function : a module-level function, which another process can import
     workers : number of processes; None for one per core
     what : noun for the tasks, in the plural
-    meanwhile : function called in this process while other processes work; not called without other
-        processes
+    meanwhile : function called in this process while other processes work
     """
     workers = min(workers or os.cpu_count() or 1, len(tasks))
     if workers < 2 or len(tasks) <= FEW:

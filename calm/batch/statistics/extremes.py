@@ -59,9 +59,9 @@ class Level:
 
     Attributes
     ----------
-    period : return period T [years]. The annual maximum (GEV) exceeds the level in one of T years
-        on average, a peak (POT) once in T years
-    low, high : ends of the confidence interval; None for an end that the data do not determine
+    period : return period T [years]. The annual maximum (GEV) exceeds the level in one of T years,
+        a peak (POT) once in T years, on average
+    low, high : ends of the confidence interval; None if the data do not determine an end
     """
 
     period: int
@@ -80,7 +80,7 @@ class Fit:
     location, scale, shape : μ, σ and ξ; for POT, the location is the threshold
     count, rate : number of fitted maxima or peaks, in total and per year
     rules : description of the selection of maxima or peaks
-    levels : return levels for the `PERIODS` that the record allows
+    levels : for the `PERIODS` that the record allows
     """
 
     method: str
@@ -315,8 +315,8 @@ def peaks_over(
 def extremal_index(intervals: NDArray[np.float64]) -> float:
     """Estimate the extremal index θ, the reciprocal of the mean cluster size of exceedances.
 
-    The intervals T (N - 1,) between exceedances are in time steps and at least 1. If all T ≤ 2, θ =
-    2 (ΣT)²/((N-1) ΣT²), else θ = 2 (Σ(T-1))²/((N-1) Σ(T-1)(T-2)); θ ≤ 1 (Ferro and Segers 2003).
+    The intervals T (N - 1,) are in time steps and at least 1. If all T ≤ 2, θ = 2 (ΣT)²/((N-1)
+    ΣT²), else θ = 2 (Σ(T-1))²/((N-1) Σ(T-1)(T-2)); θ ≤ 1 (Ferro and Segers 2003).
     """
     one, two = (1.0, 2.0) if intervals.max() > 2.0 else (0.0, 0.0)
     below = float(((intervals - one) * (intervals - two)).sum())

@@ -69,9 +69,9 @@ def limits_of(mooring: Design) -> tuple[CountedLimit, ...]:
     """List all limits of a mooring that can be evaluated in a batch, by rule and then down the
     line.
 
-    Values missing from the catalogue are replaced by the lower bounds of their estimates, as in the
-    design check. A line designed to reach the surface is checked as a surface mooring, even if its
-    float is submerged. Tensions are evaluated only at the ends and the clamps of a piece.
+    Lower bounds of estimates replace values missing from the catalogue. A line designed to reach
+    the surface is checked as a surface mooring, even if its float is submerged. Tensions are
+    evaluated only at the ends and the clamps of a piece.
     """
     legs = LegColumns.of_file(mooring.file) if mooring.several else (None,)
     order = list(RULES)
@@ -210,10 +210,8 @@ class RuleShare:
     judged : number of profiles in which at least one limit of the rule is evaluated
     fails, warns : fractions of these profiles that fail, and that warn but do not fail; None if
         `judged` is 0
-    fails_at_most : upper bound of `fails`, in which unsolved profiles with a current count as
-        failures; None if `judged` is 0
+    fails_at_most : upper bound of `fails`: unsolved profiles with a current count as failures
     unknown : number of limits that no profile can evaluate, usually because a value is missing
-    exceedances : frequency with which each limit is exceeded
     """
 
     name: str

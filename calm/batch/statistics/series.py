@@ -71,8 +71,8 @@ class LegColumns(NamedTuple):
 class ResultColumns:
     """Columns of a batch result over n profiles, with NaN for unsolved profiles.
 
-    A temporary file, deleted at the end of the `with` block, holds the transposed result with 4
-    bytes per number.
+    A temporary file, deleted at the end of the `with` block, holds the result with 4 bytes per
+    number.
 
     Parameters
     ----------
@@ -84,7 +84,6 @@ class ResultColumns:
     ----------
     time : (n,) times of the profiles
     statuses : number of profiles by status
-    component_label, clamp_label : labels of the columns
 
     Raises
     ------

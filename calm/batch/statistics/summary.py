@@ -111,8 +111,8 @@ class Summary:
     worst : worst profiles, the worst first, for each response in `RANKED`
     rules : the equilibrium rule, and the rules that can be evaluated in every profile
     not_judged : reason why each remaining rule is not evaluated
-    source : origin of the result, by the names in `SOURCE`
-    read : descriptions of the files from which the result was made
+    source : attributes of the result named in `SOURCE`
+    read : descriptions of the input files of the result
     stops : stops of the profilers, down the line
     """
 
@@ -163,13 +163,12 @@ def summarize(
 ) -> Summary:
     """Build the summary of a finished result.
 
-    Statistics exclude unsolved profiles. All shares are fractions of the number of profiles. Memory
-    use is about 35 bytes per profile.
+    Statistics exclude unsolved profiles. Memory use is about 35 bytes per profile.
 
     Parameters
     ----------
     dataset : the result, opened without loading it
-    mooring : mooring for which the result was computed, and whose limits are evaluated
+    mooring : mooring of the result, whose limits are evaluated
     folder : folder for a temporary file of the size of the uncompressed result; by default the
         temporary folder of the system
     source : the file of the result, for messages

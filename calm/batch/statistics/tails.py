@@ -48,10 +48,9 @@ class Tail:
 
     Attributes
     ----------
-    location, scale : μ, σ, in the unit of the values; the location of a Pareto distribution is its
-        threshold
+    location, scale : μ, σ, in the unit of the values; a Pareto location is the threshold
     shape : ξ; a tail with ξ < 0 has a finite end
-    maxima : whether the distribution describes maxima (GEV) or peaks over a threshold (Pareto)
+    maxima : whether the distribution describes maxima (GEV) or peaks (Pareto)
     values : (n,) fitted maxima or peaks
     """
 
@@ -106,8 +105,8 @@ class Tail:
 def fit_maxima(values: Floats) -> Tail:
     """Fit a generalised extreme value distribution by maximum likelihood (Coles 2001, eq. 3.7-3.9).
 
-    The values (n,) are independent maxima of blocks of equal length, not all equal. Raises
-    NotFitted if the fit fails or ends at a bound of `SHAPES`.
+    The values (n,) are independent maxima of equal blocks, not all equal. Raises NotFitted if the
+    fit fails or ends at a bound of `SHAPES`.
     """
     middle, spread = float(values.mean()), float(values.std())
     scaled = (values - middle) / spread
