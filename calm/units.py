@@ -164,8 +164,8 @@ def parse_quantity(text: object, dimension: str, *, usual_unit: str | None = Non
     Parameters
     ----------
     text : str or float
-        A text such as ``"12 mm"``, ``"1/2 in"`` or ``"1.5e3 N"``. Zero and plain numbers need no
-        unit. For latitudes and longitudes, see `calm.positions`.
+        A text such as ``"12 mm"``, ``"1/2 in"`` or ``"1.5e3 N"``. Zero, and values of the dimension
+        ``number``, need no unit. For latitudes and longitudes, see `calm.positions`.
     dimension : str
         A key of `DIMENSIONS`.
     usual_unit : str, optional

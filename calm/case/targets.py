@@ -131,8 +131,9 @@ def parse_target(text: str, file: MooringFile) -> Target:
 def spot_of(result: Result, place: Place | None = None) -> dict[str, Any]:
     """Return depth, excursion and knockdown [m], tilt [degrees] and tension [N] of a part.
 
-    For a piece, these are values at the upper end, but the maximum tension. The knockdown is None
-    if the shape in still water is not unique. The default part is the top of the line.
+    Depth, excursion and knockdown of a piece are those of its upper end; the tension is the maximum
+    in the piece. The knockdown is None if the shape in still water is not unique. The default part
+    is the top of the line.
     """
     row: ComponentRow | ClampRow = result.components[0]
     if place is not None:

@@ -47,7 +47,8 @@ class Contribution:
 class Uncertain:
     """Percentiles `LEVELS` of the results of a mooring with uncertain inputs.
 
-    The values are for samples with an equilibrium, of the p pieces with the anchor last.
+    All values exclude samples without an equilibrium. The p pieces include the anchor as the last
+    piece.
 
     Attributes
     ----------
@@ -59,8 +60,8 @@ class Uncertain:
         of the free end [m]
     clamps : (3, 4, m) depth, knockdown, tilt and tension of the m clamps above the anchor
     anchor_tension, required_weight : (3,) anchor tension and required anchor weight [N]
-    contributions : contributions of the inputs to the variance of the top's knockdown; of its
-        excursion for a surface mooring or an unknown knockdown; empty without variance
+    contributions : contributions of the inputs to the variance of the top's knockdown; for a
+        surface mooring or an unknown knockdown, of the top's excursion; empty without variance
     unexplained : fraction of this variance that the fit does not explain
     """
 
