@@ -4,8 +4,6 @@
 >>> result = calm.load("lines/s1000.yaml").solve()
 >>> round(result.top.knockdown, 1)
 32.2
-
-The public names are imported on first use, so that `import calm` is fast.
 """
 
 from __future__ import annotations
@@ -34,6 +32,7 @@ __all__ = [
     "estimate_motion", "explain", "grid", "load", "locate", "size", "solve_profiles",
 ]  # fmt: skip
 
+# imported on first use, so that `import calm` is fast
 _HOMES = {
     "calm.batch.profiles": ("Profiles", "solve_profiles"),
     "calm.case": ("Design", "Result", "load"),

@@ -36,9 +36,8 @@ class CalmError(Exception):
 class Problem:
     """A mistake at one position of a file.
 
-    `line` and `column` count from 1; line 0 stands for the whole file. If the file is merely
-    incomplete, `lacks` names the missing value, such as ``no length on wire 2``; otherwise `lacks`
-    is empty.
+    `line` and `column` count from 1; line 0 stands for the whole file. In an incomplete file,
+    `lacks` names the missing value, such as ``no length on wire 2``.
     """
 
     path: str
@@ -81,7 +80,7 @@ class NoEquilibrium(CalmError):
     status : str
         One of the statuses of the result format, e.g. ``"no-equilibrium"``, ``"slack"``.
     message, advice : str
-        The reason, with values, and a change that the user can try.
+        The reason, and a change that the user can try.
     piece : int, optional
         Index of the affected piece, whose name replaces ``{piece}`` in the message.
     """
@@ -120,11 +119,9 @@ EXTRAS: dict[str, tuple[str, ...]] = {
 
 
 def how_to_install(missing: ModuleNotFoundError) -> str | None:
-    """Return a message with the name of a missing library and the command that installs this
-    library.
+    """Return a message that names a missing library and the command that installs the library.
 
-    Return None if the missing module belongs to CALM or has no name, because this is a program
-    error.
+    Return None for a missing module of CALM or without a name, which is a program error.
     """
     library = (missing.name or "").partition(".")[0]
     if library in ("", "calm"):
@@ -193,10 +190,9 @@ def not_among(name: str, text: str, allowed: Iterable[str], offer: str | None = 
 def nearest(text: str, known: Iterable[str]) -> str | None:
     """Return the name most similar to a text, or None if no name is similar.
 
-    Candidates are the names with similar letters or, if there are none, the names that contain
-    every word of the text. They are ranked by the similarity of their words and numbers: for
-    ``chain-g30-16``, ``chain-short-g30-16`` ranks above ``chain-g80-16``. For ``ADCP``,
-    ``ADCP 450 m`` is returned.
+    Words and numbers count: for ``chain-g30-16``, ``chain-short-g30-16`` is nearer than
+    ``chain-g80-16``. If no name has similar letters, a name with every word of the text is similar:
+    ``ADCP`` gives ``ADCP 450 m``.
     """
     given, names = text[:LONGEST_TEXT], list(known)
     wanted = _parts(given)

@@ -26,18 +26,14 @@ def degrees_of(text: str, what: str) -> float | None:
     """Parse a latitude or longitude [degrees], negative for south and west.
 
     Texts such as ``57 28.84 N``, ``57°28.84'N``, ``57-28.84N``, ``-5 12 30`` or ``5.2 W`` are
-    accepted. Return None for a text with neither minutes nor a hemisphere, such as a plain number.
-
-    Parameters
-    ----------
-    text : the text of a position
-    what : ``latitude`` or ``longitude``
+    accepted. Return None for other texts, such as a plain number. `what` is ``latitude`` or
+    ``longitude``.
 
     Raises
     ------
     ValueError
-        Minutes or seconds are 60 or more, degrees with a fraction are followed by minutes, the text
-        has both a sign and a hemisphere, or the hemisphere belongs to the other coordinate.
+        The text has minutes or seconds of 60 or more, a fraction before the last part, a sign and a
+        hemisphere, or a wrong hemisphere.
     """
     found = _POSITION.fullmatch(text.strip())
     if found is None:
@@ -63,15 +59,8 @@ def degrees_of(text: str, what: str) -> float | None:
 def plain_degrees(text: str, what: str) -> float:
     """Parse a latitude or longitude [degrees]; a plain number is in degrees.
 
-    Parameters
-    ----------
-    text : the text of a position
-    what : ``latitude`` or ``longitude``
-
-    Raises
-    ------
-    ValueError
-        As in `degrees_of`, or the text is not a number.
+    `what` is ``latitude`` or ``longitude``. Raises ValueError as `degrees_of` does, or if the text
+    is not a number.
     """
     placed = degrees_of(text, what)
     return float(text) if placed is None else placed

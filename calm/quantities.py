@@ -1,7 +1,7 @@
-"""The quantities that CALM reports: names, symbols, units and meanings.
+"""Names, symbols, units and meanings of the quantities that CALM reports.
 
-Table headings, CSV headers, plot labels and the manual use this table, so that a quantity has the
-same name and unit everywhere. A second table lists the quantities that instruments measure.
+All outputs and the manual use this table. A second table lists the quantities that instruments
+measure.
 """
 
 from collections.abc import Mapping
@@ -23,13 +23,11 @@ class Quantity:
     heading : str
         Short title of a column or an axis, without the unit.
     unit : str
-        Unit of the value in results: an SI unit or degrees; empty for a pure number.
+        Unit in results: an SI unit or degrees; empty for a pure number.
     meaning : str
         Meaning as one sentence, for the manual.
     decimals : int
         Number of decimals shown, in the displayed unit.
-    symbol : str
-        Symbol in formulas, if there is one.
     display : str
         Usual display unit (a key of `_USUAL`), if this differs from `unit`.
     """
@@ -86,8 +84,8 @@ class Quantity:
     def say(self, value: float | None, *beside: float | None) -> str:
         """Format a value as a number with its display unit, such as ``113.2 m``.
 
-        The value is given in `unit`. A force whose usual unit is kN is shown in N if the force and
-        all values in `beside` are below 1 kN.
+        A force whose usual unit is kN is shown in N if the force and all values in `beside` are
+        below 1 kN.
         """
         if value is None or value != value:
             return "unknown"
@@ -227,11 +225,10 @@ _shown: dict[str, str] = {}
 
 @cache
 def _layout(unit: str, display: str, decimals: int) -> tuple[str, float, int]:
-    """Return display unit, factor from the unit of results to the display unit, and number of
+    """Return the display unit, the factor from the unit of results to the display unit, and the
     decimals.
 
-    A quantity with a small usual unit, such as mm, keeps this unit. The number of decimals
-    preserves the resolution of the usual unit.
+    The number of decimals preserves the resolution of the usual unit.
     """
     dimension, usual = _CHOICES.get(unit, ""), _USUAL.get(display, 1.0)
     chosen = "" if display and dimension != "force" else _shown.get(dimension, "")
@@ -242,15 +239,10 @@ def _layout(unit: str, display: str, decimals: int) -> tuple[str, float, int]:
 
 
 def show_in(units: Mapping[str, str]) -> None:
-    """Set the display units for this process.
+    """Set the display units for this process. Data files remain in SI units.
 
-    Data files remain in SI units. A quantity with a small usual unit, such as a diameter in mm,
-    keeps its usual unit.
-
-    Parameters
-    ----------
-    units : display unit for each dimension in `SHOWN_UNITS`; a dimension that is not listed keeps
-        its usual unit
+    The keys of `units` are dimensions in `SHOWN_UNITS`; other dimensions keep their usual units. A
+    quantity in mm, such as a diameter, also keeps its unit.
     """
     _shown.clear()
     _layout.cache_clear()
@@ -302,9 +294,8 @@ class MeasuredQuantity:
     archive : name in OceanSITES files
     standard_name, long_name, units : attributes of the variable in files written by CALM
     dimension : dimension of the unit, as in `calm.units`
-    sought, usual : CF standard names, and common variable names, by which the quantity is found in
-        input files
-    noise : standard deviation of the error of a good sensor, used unless the user specifies a value
+    sought, usual : CF standard names, and common variable names, in input files
+    noise : default standard deviation of the error of a good sensor
     """
 
     archive: str

@@ -1,8 +1,7 @@
 """Convert text such as `12 mm` to SI numbers.
 
-Common units are in the table below; others are converted by pint, which is imported only then. A
-mass is never accepted as a force: if a force is required, `35 kg` is an error whose message
-suggests `35 kgf`. One kilogram-force is 9.80665 N at every location.
+A mass is never accepted as a force: `35 kg` must be `35 kgf`. One kilogram-force is 9.80665 N at
+every location. Pint converts units that are not in the table below.
 """
 
 from __future__ import annotations
@@ -72,10 +71,9 @@ DIMENSIONS: Mapping[str, Dimension] = {
     "latitude": Dimension("a latitude", "deg", {"deg": 1.0}),
     "longitude": Dimension("a longitude", "deg", {"deg": 1.0}),
 }  # fmt: skip
-"""All dimensions by name. Angles are in degrees and temperatures in degrees Celsius, as in files
-and reports. Salinities are practical salinities. A mass fraction is converted to a practical
-salinity with the factor for sea water of the reference composition (Millero et al. 2008, Deep-Sea
-Research I 55, 50-72).
+"""All dimensions by name. Angles are in degrees and temperatures in degrees Celsius. Salinities are
+practical salinities; a mass fraction is converted with the factor of reference sea water (Millero
+et al. 2008, Deep-Sea Research I 55, 50-72).
 """
 
 _SPELLINGS = {
@@ -146,10 +144,9 @@ class QuantityError(ValueError):
     complaint : str
         The fault, worded to follow the invalid text, such as "needs a unit".
     suggestion : str or None
-        The corrected text, if a correction is known.
+        The corrected text, if known.
     is_other : bool
-        Whether the text is a quantity of another dimension, so that either the unit or the number
-        may be wrong.
+        Whether the text is a quantity of another dimension.
     """
 
     def __init__(
@@ -168,8 +165,7 @@ def parse_quantity(text: object, dimension: str, *, usual_unit: str | None = Non
     ----------
     text : str or float
         A text such as ``"12 mm"``, ``"1/2 in"`` or ``"1.5e3 N"``. Zero, and values of the dimension
-        ``number``, need no unit. Latitudes and longitudes may have degrees and minutes: see
-        `calm.positions`.
+        ``number``, need no unit. For latitudes and longitudes, see `calm.positions`.
     dimension : str
         A key of `DIMENSIONS`.
     usual_unit : str, optional
@@ -295,17 +291,8 @@ def unit_factor(text: str, dimension: str) -> float:
 def unit_line(text: str, wanted: str) -> tuple[float, float]:
     """Return the factor and offset that convert a value x to another unit: ``factor * x + offset``.
 
-    Factor and offset come from the library pint, which also converts temperature scales.
-
-    Parameters
-    ----------
-    text : original unit, such as ``"K"`` or ``"S m-1"``
-    wanted : target unit, as pint writes it
-
-    Raises
-    ------
-    QuantityError
-        The unit is unknown, or has another dimension than `wanted`.
+    The units, such as ``"K"`` or ``"S m-1"``, include temperature scales; `wanted` is written as by
+    pint. Raises QuantityError if the unit is unknown or has another dimension than `wanted`.
     """
     registry = _registry()
     plain = text.rpartition(",")[2].strip()  # `ITS-90, deg C`

@@ -6,11 +6,10 @@ __version__ = "0.1.0"
 
 
 def built_from() -> str:
-    """Return the commit of this installation, such as ``4c1fd21``, with ``-dirty`` if a checkout
-    has changes.
+    """Return the commit of this installation, such as ``4c1fd21``, with ``-dirty`` for a changed
+    checkout.
 
-    A wheel stores the commit in a file; in a checkout, git supplies the commit. The text is empty
-    if the commit is unknown.
+    The text is empty if the commit is unknown.
     """
     package = Path(__file__).parent
     written = package / "_shipped" / "commit"

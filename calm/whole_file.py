@@ -35,14 +35,10 @@ Stamp = tuple[tuple[str, int, int, int], ...]
 
 @contextlib.contextmanager
 def beside(target: Path) -> Iterator[Path]:
-    """Context manager for a temporary file that replaces the target if the block succeeds.
+    """Context manager for an empty temporary file that replaces the target if the block succeeds.
 
-    The temporary file is initially empty.
-
-    Raises
-    ------
-    OSError
-        The file could not be written. The target is then unchanged, and no temporary file remains.
+    Raises OSError if the file could not be written. After any exception, the target is unchanged
+    and no temporary file remains.
     """
     part = target.with_name(f".{target.name[:_LONGEST]}.{os.urandom(6).hex()}{UNFINISHED}")
     part.touch(exist_ok=False)
@@ -58,20 +54,11 @@ def beside(target: Path) -> Iterator[Path]:
 def put(
     target: Path, content: bytes, *, like: os.stat_result | None = None, durable: bool = False
 ) -> None:
-    """Write the content of a whole file.
+    """Write the content of a whole file; callers must resolve symbolic links first.
 
-    A symbolic link is replaced, so callers must resolve links first.
-
-    Parameters
-    ----------
-    like : file status from which the permissions and, if allowed, the owner are copied
-    durable : whether the file must survive a loss of power
-
-    Raises
-    ------
-    OSError
-        The file could not be written, for example because the disk is full; the old file is
-        unchanged.
+    The permissions and, if allowed, the owner are those of the file status `like`. A `durable` file
+    survives a loss of power. Raises OSError if the file could not be written; the old file is then
+    unchanged.
     """
     with beside(target) as part:
         part.write_bytes(content)
@@ -183,8 +170,7 @@ def _regular(path: Path) -> Iterator[None]:
 def no_such_file(path: Path) -> str:
     """Return the message about a missing file, with the most similar file name in the same folder.
 
-    The suggested name has the same suffix as `path`; if `path` has no suffix or .yml, the suggested
-    name has the suffix .yaml. If no name is similar, nothing is suggested.
+    A similar name has the suffix of the path, or .yaml for a path without a suffix or with .yml.
     """
     with contextlib.suppress(OSError, ValueError):
         suffix = {"": ".yaml", ".yml": ".yaml"}.get(path.suffix, path.suffix)

@@ -54,7 +54,7 @@ class BlockTask(NamedTuple):
     ----------
     layout, block : see `calm.dataset.netcdf.packed`
     time : (n,) times of the profiles
-    levels : currents of the profiles, see `calm.records.record.Record.profiles`
+    levels : currents, see `calm.records.record.Record.profiles`
     """
 
     layout: ResultLayout
@@ -84,10 +84,7 @@ def in_order(
 ) -> Iterator[Done]:
     """Yield the results of tasks in the order of the tasks, even if later tasks finish first.
 
-    Parameters
-    ----------
-    submit : function that starts a task
-    ahead : function that returns the maximum number of tasks in progress
+    `submit` starts a task. `ahead` returns the maximum number of tasks in progress.
     """
     under_way: deque[Promise[Done]] = deque()
     for task in tasks:
@@ -103,11 +100,8 @@ def in_threads(
 ) -> Generator[Done]:
     """Solve tasks in threads, and yield the results in the order of the tasks.
 
-    If the consumer stops early, waiting tasks are cancelled and running tasks are completed.
-
-    Parameters
-    ----------
-    workers : number of threads; by default one for each processor
+    If the consumer stops early, waiting tasks are cancelled. `workers` is the number of threads, by
+    default one for each processor.
     """
     count = workers or processors()
     pool = ThreadPoolExecutor(count)

@@ -30,19 +30,18 @@ def on_cluster(
 ) -> Generator[SolvedBlock]:
     """Solve blocks on the workers of a dask scheduler, and yield the results in order.
 
-    The function waits for the first worker. Workers may join and leave; the blocks of a lost worker
-    are solved by other workers.
+    The function waits for the first worker. If a worker is lost, other workers solve its blocks.
 
     Parameters
     ----------
     address : address of the scheduler, such as ``tcp://10.0.0.1:8786``
-    tell : function called with a message when the scheduler has no worker
+    tell : function called with a message if the scheduler has no worker
 
     Raises
     ------
     UsageError
-        The scheduler does not answer or is lost, CALM is not installed on the workers, or the
-        workers of one block are lost repeatedly.
+        The scheduler does not answer, CALM is not installed on the workers, or the connection is
+        lost.
     """
     from distributed import CancelledError, Client, KilledWorker
 

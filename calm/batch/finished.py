@@ -58,14 +58,8 @@ def labels_of(dataset: Dataset, name: str) -> tuple[str, ...]:
 def place_of(dataset: Dataset, label: str) -> tuple[str, int]:
     """Return the prefix of the variable names and the column number of a part of the line.
 
-    Parameters
-    ----------
-    label : label of a component or a clamp; ``top`` always selects the first component
-
-    Raises
-    ------
-    UsageError
-        No part has the label; the message suggests the nearest label.
+    The label ``top`` selects the first component. Raises UsageError, with the nearest label, if no
+    part has the label.
     """
     components, clamps = (labels_of(dataset, f"{kind}_label") for kind in ("component", "clamp"))
     if label == TOP:

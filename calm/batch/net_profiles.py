@@ -1,9 +1,8 @@
-"""Solution of a net of legs for many current profiles, with the compiled search of
-`calm.solve.leg_marches`.
+"""Solution of a net of legs for many current profiles, with compiled code.
 
-The search for each profile starts from the net in still water or, if there is no equilibrium in
-still water, from the net in the current of its file. If the search fails, or if the seabed is a
-depth grid, the profile is solved as in `calm run`.
+Each search starts from the net in still water or, without equilibrium in still water, in the
+current of the file. If the search fails or the seabed is a depth grid, the profile is solved as in
+`calm run`.
 """
 
 from concurrent.futures import ThreadPoolExecutor
@@ -56,8 +55,8 @@ class NetRows(NamedTuple):
     pieces : (n, p, 12) position [m] and force [N] at the upper end of each piece, then at the lower
         end
     clamps : (n, c, 7) position [m], sum of the forces above and below the clamp, and the larger of
-        these two forces [N]
-    shares : (n, l) used fraction of the buoyancy of the float at the upper end of each leg
+        the two [N]
+    shares : (n, l) used fraction of the buoyancy of the float at the top of each leg
     """
 
     pieces: Floats
@@ -71,11 +70,10 @@ class NetArrays(NamedTuple):
     Attributes
     ----------
     on, still : work arrays for a profile, and the water without current
-    start, slopes, scale : unknowns of the net at the starting point, their Jacobian and their
-        scales
+    start, slopes, scale : unknowns of the net at the starting point, Jacobian and scales
     x : work array for the unknowns
-    piece, clamp : row of the first piece and of the first clamp of each leg in `NetRows`
-    weight : weight of the anchor of each leg [N]; inf for a leg without an anchor
+    piece, clamp : first row in `NetRows` of the pieces and the clamps of each leg
+    weight : anchor weight of each leg [N]; inf without an anchor
     """
 
     on: solving.ProfileLevels
@@ -106,9 +104,8 @@ def solve_net_rows(
     Parameters
     ----------
     step : angle step [rad]
-    depth : (1 or n, k) depth of the levels [m]
-    u, v, w : (n, k) current [m/s]; NaN for missing values
-    endings : (n,) outcome of each profile; a profile whose outcome is not 0 on entry is skipped
+    depth, u, v, w : levels [m] and current [m/s], as in `calm.batch.solving.solve_rows`
+    endings : (n,) outcome of each profile; profiles with an outcome other than 0 are skipped
     """
     for case in range(endings.size):
         if endings[case] != 0:
@@ -251,14 +248,11 @@ class NetProfiles:
     def solve(
         self, current: tuple[Floats, ...], status: NDArray[np.int8], workers: int
     ) -> dict[str, Floats]:
-        """Solve profiles, and return the result columns by name.
+        """Solve the profiles with status 0; set their status, and return the result columns by
+        name.
 
-        A profile whose status is not 0 is skipped. For the other profiles, `status` is updated.
-
-        Parameters
-        ----------
-        current : depth (1 or n, k) of levels [m], and u, v, w (n, k) at these levels [m/s]
-        status : (n,) status of each profile, as an index in `STATUSES`
+        The current has the depths (1 or n, k) of levels [m], and u, v, w (n, k) [m/s]. The `status`
+        (n,) of each profile is an index in `STATUSES`.
         """
         count, pieces = len(status), self.net.file.pieces
         shapes = (len(pieces), 12), (len(clamps_down(pieces)), 7), (len(self.net.legs),)

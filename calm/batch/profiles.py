@@ -50,16 +50,14 @@ _STILL = CurrentTable((0.0,), (0.0,), (0.0,), (0.0,))
 
 
 class Profiles(Columnar):
-    """Results of a mooring for n profiles.
+    """Results of a mooring for n profiles, with NaN for a profile whose `status` is not 0.
 
-    The values of a profile are NaN unless its `status` is 0. If the currents were given in arrays
-    with more dimensions, these dimensions replace n. Depths, offsets and knockdown are in m,
-    tensions and forces in N, tilt in degrees. The p components are in the order of the file, with
-    the anchor last, and the m clamps are listed down the line.
+    Depths, offsets and knockdown are in m, tensions and forces in N, tilt in degrees. If the
+    currents were given with more dimensions, these dimensions replace n.
 
-    Further attributes are the batch columns, which `Profiles.columns` lists. Columns of
-    `Components` have the shape (n, p), and columns of `Clamps`, such as ``clamp_depth``, have the
-    shape (n, m). Values at the ends of the line have the shape (n,), or (n, l) for a net of l legs.
+    The attributes in `Profiles.columns` have the shape (n, p) for the p components, in the order of
+    the file with the anchor last. Columns of clamps, such as ``clamp_depth``, have the shape (n,
+    m), down the line. Values at the ends have the shape (n,), or (n, l) for a net of l legs.
 
     Attributes
     ----------
@@ -162,19 +160,15 @@ def solve_profiles(
 ) -> Profiles:
     """Solve a mooring for many current profiles.
 
-    Each profile replaces the current of the file; everything else, such as density and wind, stays
-    the same. The results of a profile depend neither on other profiles nor on `workers`, not even
-    in the last bit. The results agree with `calm run` to 1e-4 of the water depth and 2e-4 of the
-    tension.
+    Each profile replaces the current of the file. Its results agree with `calm run` to 1e-4 of the
+    water depth and 2e-4 of the tension, and do not depend on other profiles or on `workers`.
 
     Parameters
     ----------
-    u, v, w : (..., k) current to the east, to the north and upward [m/s]; w is 0
-        by default. Levels with NaN and levels above the surface are ignored. The current is linear
-        between levels, and constant above the first and below the last. Instead of the arrays, `u`
-        may be a record of currents that `calm batch` can read: a path, an `xarray.Dataset`, or a
-        `pandas.DataFrame` with the columns of a CSV file. The profiles of a record are in
-        chronological order.
+    u, v, w : (..., k) current to the east, to the north and upward [m/s]; w is 0 by default. Levels
+        with NaN and levels above the surface are ignored. The current is linear between levels, and
+        constant above the first and below the last. Instead of arrays, `u` may be a record: a path,
+        an `xarray.Dataset`, or a `pandas.DataFrame` with the columns of a CSV file
     depth : depths of the levels, in any order, with the shape (k,) or the shape of u [m]
     workers : number of threads; by default one per available processor
 
@@ -187,9 +181,9 @@ def solve_profiles(
     TypeError
         The current is not numeric, or `v` or `depth` is missing.
     ValueError
-        The shapes of the arrays do not match, or there is less than one worker.
+        The shapes do not match, or there is less than one worker.
     NoEquilibrium
-        A piece has a fitted length, but no length reaches the required depth.
+        No length of a fitted piece reaches the required depth.
     """
     batch = Batch(mooring)
     if is_record(u):
@@ -252,10 +246,8 @@ class Batch:
     def slopes(self, u: Floats, v: Floats, depth: Floats) -> tuple[Profiles, Floats]:
         """Solve profiles (n, k) of a moored line in one thread, with derivatives of the depths.
 
-        Returns
-        -------
-        The profiles, and the derivatives (n, m + p, 2 k) of the depths of clamps and components
-        with respect to u and v at each level [s]; NaN for a profile without an equilibrium.
+        The derivatives (n, m + p, 2 k) of the depths of clamps and components are with respect to u
+        and v at each level [s]; NaN without an equilibrium.
         """
         _, current = _checked(u, v, depth, None)
         return self._solve_alone(self.mooring.moored, current, 1, 2 * current[1].shape[1])

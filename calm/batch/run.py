@@ -35,15 +35,14 @@ def run_batch(
 ) -> dict[str, int]:
     """Solve a mooring for every profile of a record, and write the result file.
 
-    The file gets its final name when it is complete. If the run stops earlier, no new file remains,
-    and an older result is not overwritten.
+    An interrupted run leaves no new file and does not change an older result.
 
     Parameters
     ----------
     output : a .nc file; an existing file is replaced
     workers : number of threads; by default one for each processor
-    block : number of profiles in a block, which is one chunk of the result; by default `BLOCK` or,
-        for a net, `BLOCK_OF_NET`
+    block : number of profiles in a chunk of the result; by default `BLOCK` or, for a net,
+        `BLOCK_OF_NET`
     scheduler : address of a dask scheduler whose workers solve the blocks
     progress : function called before the first block and after each block
     tell : function called with messages for the user
@@ -55,10 +54,9 @@ def run_batch(
     Raises
     ------
     UsageError
-        The record has no profile, the result cannot be written, or the scheduler does not answer or
-        is lost.
+        The record has no profile, the result cannot be written, or the scheduler is not available.
     NoEquilibrium
-        A piece has a fitted length, but no length reaches the required depth.
+        No length of a fitted piece reaches the required depth.
     """
     if record.count == 0:
         raise UsageError("the record has no profile in the requested period")

@@ -1,7 +1,7 @@
 """Solution of successive profiles with the search of `calm.solve`, and calculation of the results.
 
-A profile is solved to a tolerance of about a millionth of the depth, and without an audit. The
-results are extrapolated from two solutions, one of which has segments of half the length.
+The tolerance is about a millionth of the depth. The results are extrapolated from two solutions,
+one with segments of half the length.
 """
 
 from math import atan2, inf, isfinite, nan, pi, sqrt
@@ -44,10 +44,12 @@ OF_ENDS = (
 )  # fmt: skip
 
 NO_CURRENT, LEVELS_COINCIDE, LIES_ON_SEABED, LACKS_ROOM = range(100, 104)
-"""Outcomes of a profile in addition to the outcomes in `calm.solve.solution`. `NO_CURRENT`: no
-level has a value. `LEVELS_COINCIDE`: two levels have the same depth. `LIES_ON_SEABED`: a
-sub-surface line has a piece other than chain on the seabed. `LACKS_ROOM`: the work arrays are too
-small for the number of segments.
+"""Outcomes of a profile in addition to the outcomes in `calm.solve.solution`.
+
+- `NO_CURRENT`: no level has a value.
+- `LEVELS_COINCIDE`: two levels have the same depth.
+- `LIES_ON_SEABED`: a sub-surface line has a piece other than chain on the seabed.
+- `LACKS_ROOM`: the work arrays are too small for the number of segments.
 """
 
 
@@ -60,10 +62,10 @@ the unknown.
 
 
 class Results(NamedTuple):
-    """Rows of results, one per profile: pieces (n, 6, p), clamps (n, 5, m) and ends (n, 6).
+    """Results of n profiles: pieces (n, 6, p), clamps (n, 5, m) and ends (n, 6).
 
     `slopes` (n, m + p, 2 k) are the derivatives of the depths of clamps and pieces with respect to
-    u and v at each level [s]. If they are not required, the shape is (n, 0, 0).
+    u and v at each level [s]. The shape (n, 0, 0) omits the derivatives.
     """
 
     pieces: Floats
@@ -79,7 +81,7 @@ class ProfileLevels(NamedTuple):
     ----------
     read, joined : levels of the profile, and all levels after the merge (see `lay_profile`)
     levels, intervals, bends : as in `Sea`
-    fixed : (f, 4) levels that are merged with every profile: depth, additional u and v, and density
+    fixed : (f, 4) levels merged with every profile: depth, additional u and v, density
     """
 
     read: Floats
@@ -112,8 +114,8 @@ class ProfileArrays(NamedTuple):
     ----------
     on : work arrays for the levels of a profile
     may_lie : (p,) whether each piece may lie on the seabed in a sub-surface mooring
-    depths : (3, m + p) depths of clamps and pieces, their derivatives with respect to the unknown
-        of the search, and the depths in a changed current
+    depths : (3, m + p) depths of clamps and pieces, slopes of these depths with respect to the
+        searched unknown, and depths in a changed current
     """
 
     on: ProfileLevels
@@ -138,8 +140,8 @@ def solve_rows(
 
     Parameters
     ----------
-    first : whether these are the first profiles of a mooring, so that the starting values of the
-        search must be computed
+    first : whether to compute the starting values of the search, for the first profiles of a
+        mooring
     depth : (1 or n, k) depth of the levels [m]
     u, v, w : (n, k) current [m/s]; NaN for missing values
     endings : (n,) outcome of each profile
@@ -168,13 +170,9 @@ def solve_rows(
 def sea_of(
     on: ProfileLevels, depth: Floats, u: Floats, v: Floats, w: Floats, case: int, still: Sea
 ) -> tuple[int, Sea]:
-    """Return the outcome and the water of a profile; the outcome is FOUND, NO_CURRENT or
-    LEVELS_COINCIDE.
+    """Return the outcome and the water of a profile: FOUND, NO_CURRENT or LEVELS_COINCIDE.
 
-    Parameters
-    ----------
-    depth, u, v, w : as in `solve_rows`; `case` is the row of the profile
-    still : water from which gravity and viscosity are taken
+    Gravity and viscosity are those of the water `still`. For the currents, see `solve_rows`.
     """
     at = depth[case if depth.shape[0] > 1 else 0]
     found, ending, total = read_profile(at, u[case], v[case], w[case], on.read), FOUND, 0
@@ -290,10 +288,9 @@ def measure_slopes(
 ) -> None:
     """Write the derivatives of the depths with respect to the current components to row `case`.
 
-    For each component, the line is marched once in a slightly changed current, with the same
-    segments and the same value of the unknown. By the implicit function theorem, the change in the
-    unknown is minus the change in the residual of the search, divided by the slope of this
-    residual. With several floats at the surface, the search is repeated instead.
+    The derivatives are finite differences with the same segments. The implicit function theorem
+    gives the change of the unknown that the search solves for. A line with several floats at the
+    surface is solved again for each component.
     """
     found, row = problem.work.found, slopes[case]
     unknown = Unknown(
@@ -438,17 +435,14 @@ def between(table: Floats, count: int, k: int, depth: float, c: int) -> float:
 def lay_profile(
     read: Floats, count: int, fixed: Floats, levels: Any, intervals: Any, joined: Floats
 ) -> int:
-    """Merge a profile with the fixed levels, and write levels and intervals as in `Sea`.
+    """Merge a profile with the fixed levels, write levels and intervals as in `Sea`, and count the
+    levels.
 
     Parameters
     ----------
     read : depth, u, v, w of the profile's levels
     fixed : (f, 4) depth, addition to u and to v, density
-    joined : filled with depth, u, v, w, density of the merged levels
-
-    Returns
-    -------
-    Number of merged levels.
+    joined : receives depth, u, v, w, density of the merged levels
     """
     total = i = j = 0
     given = fixed.shape[0]

@@ -30,8 +30,8 @@ STATUSES = (*(status.label for status in Status), "no-current", "levels-coincide
 """Names of the status numbers, beginning with 0."""
 
 IN_WEAK_CURRENT = frozenset({Status.SLACK.label, Status.ABOVE_SURFACE.label})
-"""Statuses of a line in a current that is too weak to tighten the line or to keep it submerged.
-Such profiles do not contain the extremes of a response; profiles with other failures may.
+"""Statuses of a line in a current too weak to tighten the line or to keep the line submerged. Such
+profiles do not contain the extremes of a response.
 """
 
 _ENDINGS = {
@@ -75,11 +75,10 @@ _AT_ONCE = 8192
 def implausible(
     depth: Floats, u: Floats, v: Floats, w: Floats | None, maximum_speed: float
 ) -> NDArray[np.bool_]:
-    """Return whether each level (n, k) is implausible.
+    """Return whether each level (n, k) of current profiles is implausible.
 
-    A level is implausible if its speed exceeds `maximum_speed` [m/s], or if it is deeper than any
-    ocean. An infinite speed counts as too fast. Levels above the surface and levels without a value
-    are ignored.
+    An implausible level is faster than `maximum_speed` [m/s], or deeper than any ocean. Levels
+    above the surface and levels without a value are plausible.
     """
     with np.errstate(invalid="ignore", over="ignore"):
         squared = u * u + v * v + (0.0 if w is None else w * w)

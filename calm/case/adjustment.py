@@ -41,15 +41,13 @@ class Adjustment:
     Attributes
     ----------
     text : name of the parameter, e.g. ``top float.buoyancy``
-    file : the mooring before the change
-    parts : parts that change together, in their original state
-    dimension : dimension of the value, a key of `calm.units.DIMENSIONS`
+    file, parts : the mooring and the changed parts, in their original state
+    dimension : a key of `calm.units.DIMENSIONS`
     now : value before the change
     range : default smallest and largest value
-    to : function that returns the mooring for a new value of the parameter
-    bounded : whether the lower end of `range` is also the lowest value that the user may allow
+    to : function that returns the mooring for a new value
+    bounded : whether the user may not go below the lower end of `range`
     whole : whether the value must be a whole number
-    note : remark for the user
     """
 
     text: str
@@ -217,17 +215,9 @@ _FIELDS = {"buoyancy": _buoyancy, "length": _length, "count": _count}
 def parse_change(text: str, file: MooringFile) -> Adjustment:
     """Parse the name of a parameter to vary, e.g. ``top float.buoyancy``.
 
-    Parameters
-    ----------
-    text : a label, a full stop, and ``buoyancy``, ``length`` or ``count``. The label names one
-        part, or is the common beginning of numbered labels, such as ``glass`` for ``glass 1`` and
-        ``glass 2``. For a count, the label may also name an assembly
-    file : the mooring in which the label is looked up
-
-    Raises
-    ------
-    UsageError
-        The text is invalid; the message points to the mistake and suggests a correction.
+    The text has a label, a full stop, and ``buoyancy``, ``length`` or ``count``. The label
+    ``glass`` also stands for ``glass 1``, ``glass 2`` and so on. For a count, the label may name an
+    assembly. Raises UsageError, which points to the mistake, if the text is invalid.
     """
     text = " ".join(text.split())
     name, point, field = text.rpartition(".")
@@ -252,11 +242,10 @@ def parse_change(text: str, file: MooringFile) -> Adjustment:
 
 
 def parse_range(texts: tuple[str, str] | None, change: Adjustment) -> tuple[float, float]:
-    """Parse the lower and upper end of a range, each with its unit. Without texts, return the
-    default range of the parameter.
+    """Parse the lower and upper end of a range, each with its unit.
 
-    Raises UsageError if an end has the wrong dimension or is not allowed, or if the ends are in the
-    wrong order.
+    The default is the range of the parameter. Raises UsageError if an end is not allowed or the
+    ends are in the wrong order.
     """
     if texts is None:
         low, high = change.range

@@ -1,19 +1,13 @@
 """Attribution of a mooring's knockdown and excursion to the drag of each part.
 
 Let y(λ₁ … λ_p) be the quantity to explain, such as the knockdown, of the line with drag i
-multiplied by λ_i. The share of drag i is its Aumann–Shapley value,
+multiplied by λ_i. The share of drag i in y is its Aumann–Shapley value,
 
     share_i = ∫₀¹ ∂y/∂λ_i (s, …, s) ds
 
-All drags increase together from zero to full size. At every stage, each drag is attributed the
-change that its own increase causes. The shares add up to y(1 … 1) − y(0 … 0). Among the rules with
-this property, the Aumann–Shapley value is the only rule that is independent of the division of the
-line into components and attributes zero to a drag without effect (Billera & Heath, Mathematics of
-Operations Research 7, 1982). Removing one component at a time does not work: the differences do not
-add up, since drags interact.
-
-If drags are proportional to the square of the speed, the stage s = t² is equivalent to a current
-multiplied by t.
+The shares add up to y(1 … 1) − y(0 … 0), do not depend on the division of the line into components,
+and are zero for a drag without effect. No other rule has these three properties (Billera & Heath,
+Mathematics of Operations Research 7, 1982).
 """
 
 from collections.abc import Callable, Sequence
@@ -31,8 +25,8 @@ from calm.solve.mooring import Nearby
 from calm.solve.net import NearbyNet
 
 STAGES = (4, 8)
-"""Numbers of Gauss points in t. The second number is used if the first leaves an error above
-`LARGEST_MISS`.
+"""Numbers of Gauss points of the integral over the drag. The second number is used if the first
+leaves an error above `LARGEST_MISS`.
 """
 LARGEST_MISS = 0.01
 LEAST_DRAG = 1e-3
@@ -51,8 +45,8 @@ end.
 
 
 SolverPart = tuple[int, int, int]
-"""Place of a part in the solver: number of its leg (0 for a single line), index of its piece, and
-index of its clamp or -1.
+"""Position of a part for the solver: number of the leg (0 for a single line), index of the piece,
+and index of the clamp or -1.
 """
 
 Varied = Callable[[int, Line], Floats]
@@ -63,19 +57,17 @@ Varied = Callable[[int, Line], Floats]
 
 @dataclass(frozen=True)
 class Attribution:
-    """Contributions of the drag of each of p pieces and clamped instruments.
+    """Contributions of the drags of p pieces and clamped instruments to the shape of a line.
 
-    The columns of `start` and `shares` are the depth and the excursion of a point of the line [m],
-    and the used fraction of the surface float's buoyancy.
+    Columns are the depth and the excursion of a point of the line [m], and the used fraction of the
+    surface float's buoyancy.
 
     Attributes
     ----------
-    parts : leg, piece and clamp on which each drag acts; the clamp is -1 if the drag acts on the
-        piece
+    parts : leg, piece and clamp on which each drag acts; the clamp is -1 for the piece itself
     start : (3,) values without drag, or with the smallest drag
-    shares : (p, 3) contribution of each drag; the sum over the drags is the total change
-    miss : (3,) relative error of these sums before the contributions were scaled to the total
-        change
+    shares : (p, 3) contributions, which add up to the total change
+    miss : (3,) relative error of these sums before scaling to the total change
     """
 
     parts: list[SolverPart]
@@ -95,11 +87,10 @@ def attribute(
     Parameters
     ----------
     lines : lines of the legs, or a single line
-    near : function that takes lines and returns a second function, which starts from the solutions
-        for these lines; the second function solves a variant of one line and returns the (3,)
-        values at the point
-    start : (3,) values without drag, in the columns of `Attribution`; None if the line has no
-        unique shape without drag, in which case the shares begin at `LEAST_DRAG`
+    near : function that solves these lines and returns a second function, which returns the (3,)
+        values at the point for a variant of one line
+    start : (3,) values without drag; None if the shape without drag is not unique, so that the
+        shares begin at `LEAST_DRAG`
     whole : (3,) values with full drag
 
     Raises
@@ -161,7 +152,9 @@ def _integral(
     least: float,
     stages: int,
 ) -> Floats:
-    """Compute (p, 3) ∫ ∂y/∂λ ds from `least` to 1, with s = t² and ∂y/∂λ = (∂y/∂ln λ)/s."""
+    """Compute the contributions (p, 3), ∫ ∂y/∂λ ds from `least` to 1, with s = t² and ∂y/∂λ =
+    (∂y/∂ln λ)/s.
+    """
     abscissae, weights = np.polynomial.legendre.leggauss(stages)
     low = np.sqrt(least)
     half = 0.5 * (1.0 - low)

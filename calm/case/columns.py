@@ -1,7 +1,7 @@
 """Definition of a result column: title, unit, description, computation and outputs.
 
-`calm.case.result_tables` has one entry for each column. Tables, JSON, CSV, NetCDF, batches, the
-builder and the manual use these entries, so a new entry appears in every output that it names.
+`calm.case.result_tables` has one entry for each column, which appears in every output named in the
+entry.
 """
 
 from __future__ import annotations
@@ -48,26 +48,21 @@ _LAST = 1000
 
 @dataclass(frozen=True)
 class ResultColumn:
-    """A column of a result table.
-
-    Each column is computed by one of four functions. `of_part` reads the piece or clamp of the
-    file. `found` reads the arrays of a solved line; `at_anchor` then supplies the row of the
-    anchor. `derived` combines earlier columns. `of_row` is called when an output shows a row.
+    """A column of a result table, computed by at most one of its functions.
 
     Attributes
     ----------
     name : name in Python and JSON
     quantity : title, unit and digits of a numeric column; None for text
     description : meaning, for the manual and the NetCDF `long_name`
-    outputs : outputs that show the column
     prefix : prefix of the name in NetCDF and batches
-    of_part : returns the value for a piece or clamp of the file
-    found : returns the values (n,) from `LineFigures`, `ClampFigures` or `NodeFigures`
-    at_anchor : returns the value for the anchor from a `LineEnd`, or for a clamp on the anchor from
-        an `OnAnchor`
-    derived : returns the values (…, n) from a namespace that contains the earlier columns and, as
-        `part`, the n pieces or clamps
-    of_row : returns the value from a row and the mooring file; no table stores this value
+    of_part : function of the piece or clamp of the file
+    found : function of `LineFigures`, `ClampFigures` or `NodeFigures` that returns the values (n,)
+    at_anchor : function for the row of an anchor, of a `LineEnd` or, for a clamp on the anchor, of
+        an `OnAnchor`; supplements `found`
+    derived : function of a namespace with the earlier columns and, as `part`, the n pieces or
+        clamps; returns the values (…, n)
+    of_row : function of a row and the mooring file, for outputs only
     worst : selects the value shown in the builder if several pieces share a row
     place : rank from the left in printed tables; columns without a rank come last
     attributes : additional attributes of the NetCDF variable
@@ -137,11 +132,10 @@ def column(
     Parameters
     ----------
     description, outputs, more : attributes of the `ResultColumn`
-    title, unit, decimals : title, unit and decimals of the quantity. Without `unit`, the quantity
-        is the entry of `QUANTITIES` that has the name of the field, and `title` replaces the
-        heading of this entry. If there is no such entry, the column is text.
+    title, unit, decimals : properties of the quantity. Without `unit`, the quantity is the entry of
+        `QUANTITIES` with the name of the field, under the heading `title` if given. Without an
+        entry, the column is text
     in_repr : whether the `repr` of a row includes the field
-    default : default value of the field
     """
 
     def named(name: str, prefix: str) -> ResultColumn:

@@ -1,7 +1,7 @@
-"""Designs read from files, and the results of solving them.
+"""Designs read from files, and the results of solving the designs.
 
-A mooring is one leg with a free top and an anchor. A tow is one leg held at the ship. A net has
-several legs that join at nodes.
+A mooring is one leg with a free top and an anchor; a tow is one leg held at the ship; a net has
+several legs.
 """
 
 from __future__ import annotations
@@ -67,8 +67,7 @@ _SKIN = 1e-3  # m: thickness of the layer above the surface in which water turns
 class Design:
     """A mooring, a tow or a net of legs, as `calm.load` reads it from a file.
 
-    `solve` finds the equilibrium, and `with_` returns a copy with changed values. `environment` and
-    `legs` are the contents of the file. A design is immutable::
+    A design is immutable. `solve` finds the equilibrium; `with_` returns a changed copy::
 
         design = calm.load("mooring.yaml")
         longer = design.with_("wire 1", length="480 m")
@@ -79,7 +78,7 @@ class Design:
     file : contents of the file, in SI units
     for_surface, memory : see `Leg`
     lines, given_water : replacements for the lines and the water of the file
-    near : known equilibrium of a similar net, from which the search for this net starts
+    near : known equilibrium of a similar net, the starting point of the solution
     origin : path, environment and catalogues of the file; None for a design made in Python
     """
 
@@ -186,16 +185,15 @@ class Design:
         """Return a copy of the design with changed values of the file.
 
         Values are written as in the file, with their units: ``with_("wire 1", length="480 m")``,
-        ``with_(tow={"speed": "4 kn"})``,
-        ``with_(environment={"current": {"speed": "0.3 m/s", "toward": "90 deg"}})``. None removes
-        a key. Keys of a mapping are changed one by one.
+        ``with_(tow={"speed": "4 kn"})``, ``with_(environment={"current": {"speed": "0.3 m/s",
+        "toward": "90 deg"}})``. None removes a key. A mapping changes only the keys that it
+        contains.
 
         Parameters
         ----------
-        label : label of the piece or clamp whose keys are changed; without it, top-level keys of
-            the file are changed
-        environment : name of an entry of `environments` in the file, an environment file, or
-            changed keys of the default environment
+        label : piece or clamp to change; by default, the keys are top-level keys of the file
+        environment : an entry of `environments` in the file, an environment file, or changed keys
+            of the default environment
 
         Raises
         ------
@@ -337,11 +335,8 @@ def solved_alone(leg: Leg) -> LegResult:
 def result_together(design: Design, found: NetSolution, still: Sequence[Solution | None]) -> Result:
     """Build the result of several legs that were solved together.
 
-    Raises NoEquilibrium if a leg would lift its anchor or penetrate the slope.
-
-    Parameters
-    ----------
-    still : solutions of the legs in still water; None for a leg whose shape is unknown
+    `still` has the solution of each leg in still water, or None if unknown. Raises NoEquilibrium if
+    a leg would lift its anchor or penetrate the slope.
     """
     legs: list[LegResult] = []
     for leg, solution, before in zip(design.legs, found.legs, still, strict=True):
@@ -382,23 +377,19 @@ def _reversed_order_warning(result: LegResult) -> str:
 class Result:
     """Result of a converged design. Lengths and depths are in m, forces in N, angles in degrees.
 
-    x and y are distances to the east and north. Their origin is the anchor, the tow point or, for
-    several legs, the origin in the file. A result with one leg also has the attributes of this leg,
-    such as `top` and `anchor`.
+    x and y are distances to the east and north of the anchor, the tow point or, with several legs,
+    the origin in the file. A result with one leg has the attributes of `LegResult`, such as `top`
+    and `anchor`.
 
     Attributes
     ----------
-    design : the solved design
-    status : ``converged``
     iterations, segments : number of marches, and of segments of the final shape
-    miss : largest distance of an end from its required position; for one leg, the vertical distance
-        [m]
+    miss : largest distance of an end from its required position [m]; for one leg, the vertical
+        distance
     closure : relative force residual, recomputed from the final coordinates
-    accuracy : error estimates of the solver
-    legs : results of the legs
-    nodes : positions of the nodes
-    notebook_form, netcdf_form, plot_form : functions that convert a result to HTML, NetCDF and
-        pictures; packages that import this one set them
+    nodes : positions of the nodes of a net
+    notebook_form, netcdf_form, plot_form : functions for HTML, NetCDF and pictures, set by packages
+        that import this one
     """
 
     design: Design
@@ -693,8 +684,8 @@ def load(
     ----------
     path : the YAML file
     environment : name of an entry of `environments` in the file, or an environment file
-    catalogs : additional catalogue files, whose definitions take precedence over the shipped ones
-    text : text that replaces the content of the file; paths in it remain relative to the file
+    catalogs : additional catalogue files, which take precedence over the shipped ones
+    text : text that replaces the content of the file; paths remain relative to the file
 
     Raises
     ------

@@ -1,8 +1,7 @@
 """Random draws of a mooring's uncertain inputs, and the mooring for each draw.
 
-The draws are a scrambled Sobol' sequence with one number for each uncertain input. In one draw, for
-example, all cables are too long by the same factor, and the current is too fast by the same factor
-at all depths.
+The draws are a scrambled Sobol' sequence. An input has the same error everywhere in a draw: all
+cables are too long by the same factor, for example.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -75,9 +74,8 @@ def normals_of(samples: int, seed: int) -> Floats:
 def draws_of(uncertainty: Uncertainty, normals: Floats) -> list[Draw]:
     """Convert standard normal numbers (n, causes) to draws.
 
-    If a deviation is specified, it is the standard deviation of a normal distribution about the
-    specified value. If a pair is specified, its values are the 5th and 95th percentiles of a
-    distribution that is normal for an angle and lognormal for a factor.
+    A deviation in the file is the standard deviation of a normal distribution. A pair of values is
+    the 5th and 95th percentile of a normal (angle) or lognormal (factor) distribution.
     """
     columns = [
         (_angles if name == _ANGLE else _factors)(getattr(uncertainty, name), normals[:, i])
@@ -146,9 +144,9 @@ def drawn_water(water: Water, draw: Draw) -> Water:
 
 
 class Neighbours(NoMemory):
-    """Solver for moorings that differ little from a solved one.
+    """Solver for moorings that differ little from a solved mooring.
 
-    Each search starts from the known equilibrium; if this fails, the mooring is solved from
+    Each search starts from the known equilibrium; if the search fails, the mooring is solved from
     scratch.
     """
 

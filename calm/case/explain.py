@@ -47,11 +47,9 @@ class Causes(ColumnTable[Cause]):
     Attributes
     ----------
     index : (p,) index of the piece, or of the piece that carries the clamp
-    label : (p,) label of the part
-    clamped : (p,) whether the part is a clamp
     drag : (p,) horizontal drag force [N]
-    knockdown, excursion, used_buoyancy : (p,) contribution of the drag to these quantities of the
-        mooring [m], [m], [-]
+    knockdown, excursion, used_buoyancy : (p,) contribution of the drag to these quantities [m],
+        [m], [-]
     """
 
     record = Cause
@@ -72,15 +70,13 @@ class Explanation:
 
     Attributes
     ----------
-    label : label of the explained piece or clamp
-    quantities : names of the meaningful columns of `causes`: knockdown and excursion or, for a line
-        without a unique shape in still water, excursion and used buoyancy
+    quantities : explained quantities, as columns of `causes`: excursion, with the knockdown if the
+        shape in still water is unique, or with the used buoyancy of a surface float
     figures : values of the original mooring
-    without_drag : part of each quantity that is not caused by drag
-    causes : contribution of each drag to the remaining part; None if unknown
-    miss : largest relative error of the sums of contributions before they were scaled
+    without_drag : contribution to each quantity that is not caused by drag
+    causes : contributions of the drags; None if unknown
+    miss : largest relative error of the sums of contributions before scaling
     changes : results for more buoyancy, less drag, and more and less current
-    notes : remarks for the user
     """
 
     label: str
@@ -119,18 +115,11 @@ def _change_document(change: WhatIf) -> dict[str, Any]:
 
 
 def explain(result: Result, label: str | None = None) -> Explanation:
-    """Explain a solved mooring, or a net of legs.
+    """Explain the knockdown and excursion of a mooring or a net of legs.
 
-    Parameters
-    ----------
-    result : result of a mooring or a net
-    label : label of the clamp, or of the piece whose upper end is explained. The default ``top`` is
-        the free end; in a net it is the free end of the first leg that has one
-
-    Returns
-    -------
-    Explanation : contributions from `calm.case.attribution`. The mooring with a changed input is
-        solved with the settings of the result, and a fitted piece keeps its length.
+    The mooring is also solved with changed inputs, in which a fitted piece keeps its length. The
+    `label` selects a clamp, or a piece whose upper end is explained. The default is the free end,
+    in a net the first free end.
 
     Raises
     ------

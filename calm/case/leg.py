@@ -40,11 +40,11 @@ class Leg:
 
     Attributes
     ----------
-    file : file with this leg only; its pieces are counted from the upper end. If a leg that is not
-        a tow has no anchor, its last piece is a stand-in with the id `STAND_IN`
+    file : file with this leg only, pieces from the upper end. The last piece is the anchor or a
+        stand-in with the id `STAND_IN`, except in a tow
     for_surface : whether the leg is designed to reach the surface; None to determine this from the
-        leg itself. A check modifies copies of a leg; each copy keeps the value of its original leg
-    memory : cache of solutions for earlier states of the file and for other environments
+        leg
+    memory : cache of solutions for earlier versions of the file and other environments
     given_line, given_water : replacements for the line and the water of the file
     """
 
@@ -190,9 +190,8 @@ class Leg:
     def anchor_drag(self) -> float:
         """Drag of the falling anchor at 1 m/s [N/(m/s)²].
 
-        An anchor without `kt` has the drag of a cube with its displaced volume. If the displaced
-        volume is unknown, it is computed from the weight and the density of the material, which is
-        steel by default.
+        An anchor without `kt` has the drag of a cube with its displaced volume. An unknown volume
+        follows from the weight and the density of the material, by default steel.
         """
         anchor = self.file.anchor
         if anchor.kt is not None:
@@ -258,8 +257,8 @@ class Leg:
     def refuse_in_the_slope(self, solution: Solution) -> None:
         """Raise NoEquilibrium if a line would penetrate the seabed of a depth grid.
 
-        The solver assumes a plane seabed, so the grounded part may be below the grid. The suspended
-        part may be below the grid, too, but no farther than the grounded part.
+        The suspended part of the line may be below the grid, but no farther than the grounded part,
+        because the solver assumes a plane seabed.
         """
         depth = self.water.depth
         if self.file.environment.seabed is None:

@@ -34,15 +34,12 @@ from calm.solve.solution import OtherEquilibrium
 class LegResult:
     """Result of a leg in equilibrium. Lengths and depths are in m, forces in N, angles in degrees.
 
-    The components of a tow are listed from the ship down, and its shape begins at the free end.
-    Tables are computed when they are first used.
+    The components of a tow are listed from the ship down, but its shape begins at the free end.
 
     Attributes
     ----------
-    leg : the solved leg
-    solution : solution for the line of the leg
     still : solution in still water; None if the shape in still water is not unique
-    profilers : results for each profiler at several positions; all other results are for profilers
+    profilers : results for each profiler at several positions; in all other results, profilers are
         at their upper stops
     """
 
@@ -206,10 +203,8 @@ class LegResult:
 
     @property
     def other_equilibrium(self) -> dict[str, float] | None:
-        """Values of another equilibrium, such as the depth of the free end; None if none was found.
-
-        For a mooring, the values include the length on the seabed, the used fraction of the
-        buoyancy, and the anchor load.
+        """Values of a second equilibrium, such as the depth of the free end; None if none was
+        found.
         """
         if self.other is None:
             return None

@@ -26,8 +26,7 @@ class LineFigures:
     solution, still : solutions in the current and in still water; `still` is needed for the
         knockdown
     pieces : (n,) pieces of the file; needed for `index` and `reynolds` only
-    upper, lower : (n,) indices of the nodes at the ends of each piece; the upper end is the end
-        that the file lists first
+    upper, lower : (n,) indices of the nodes at the ends of each piece, in the order of the file
     top, bottom : (n, 3) positions of these nodes: east, north, up [m]
     """
 
@@ -96,11 +95,11 @@ class LineFigures:
 
     @cached_property
     def tilt(self) -> Floats:
-        """(n,) angle between the straight line through the ends of each piece and the vertical
+        """(n,) angle between the vertical and the straight line through the ends of each piece
         [degrees].
 
         A piece without length has the angle of the tension. The pieces at the head of the line form
-        one rod and have the angle of this rod.
+        one rod.
         """
         solution, chord = self.solution, self.top - self.bottom
         pull = solution.force[self.upper] + solution.force[self.lower]
@@ -139,9 +138,8 @@ class ClampFigures:
 
     Attributes
     ----------
-    clamps : (m,) clamps of the file
     index : (m,) index of the piece that carries each clamp
-    position : (m, 3) positions: east, north, up [m]
+    position : (m, 3) east, north, up [m]
     """
 
     def __init__(
@@ -167,8 +165,8 @@ class ClampFigures:
     def tilt(self) -> Floats:
         """(m,) tilt [degrees].
 
-        On a rigid piece, this is the tilt of the piece. On a cable or chain, it is the angle of the
-        mean of the tensions above and below the clamp.
+        On a rigid piece, the tilt of the piece; on a cable or chain, the angle of the mean tension
+        above and below the clamp.
         """
         solution, elements = self.solution, self._elements
         pull = solution.force[elements] + solution.force[elements + 1]

@@ -28,10 +28,7 @@ def components_of(
 ) -> Components:
     """Build the table of the solved pieces, in file order.
 
-    Parameters
-    ----------
-    pieces : pieces in file order; the anchor is not included
-    still : solution in still water, from which the knockdown is computed
+    `pieces` excludes the anchor. `still` is the solution in still water, needed for the knockdown.
     """
     line = LineFigures(solution, still, pieces)
     return Components.made(pieces, lambda column: column.found and column.found(line))

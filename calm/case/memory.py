@@ -27,8 +27,7 @@ T = TypeVar("T")
 class Memory:
     """Cache of solver outcomes by inputs, so that identical problems are solved only once.
 
-    Labels are not part of the inputs, and solutions in still water are shared by all currents. The
-    cache may be used by several threads.
+    Labels are not part of the inputs. Several threads may use the cache.
     """
 
     def __init__(self) -> None:
@@ -75,10 +74,9 @@ class NoMemory(Memory):
 
 
 class _Describing(pickle.Pickler):
-    """Pickler that serialises the inputs of a solver to a cache key.
+    """Pickler that converts the inputs of a solver to a cache key.
 
-    A dataclass is represented by its fields, without cached properties. A function, such as the
-    displacement curve of a hull, is represented by its name and closure.
+    A dataclass is represented by its fields, and a function by its name and closure.
     """
 
     def reducer_override(self, thing: Any) -> Any:

@@ -61,10 +61,9 @@ def solve_together(
 
 
 def _why_not(legs: Sequence[Leg], laid: Sequence[NetLeg]) -> NoEquilibrium | None:
-    """Diagnose a net that sinks, or whose fixed ends are farther apart than its legs are long.
+    """Return the reason if a net sinks, or if its legs are too short for the distance of its ends.
 
-    The weight of pieces that may lie on the seabed is ignored. The shortest path through the net
-    between two ends is computed with the Floyd-Warshall method.
+    The weight of pieces that may lie on the seabed is ignored.
     """
     lift = 0.0
     for each in laid:

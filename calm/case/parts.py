@@ -110,12 +110,11 @@ class Origin:
 
         Parameters
         ----------
-        file : the file as read
-        label : label of the piece or clamp whose keys are changed; None to change keys of the file
+        label : piece or clamp whose keys are changed; None for keys of the file
         environment : name or path of another environment, or changed keys of the default
-            environment; None leaves the environment unchanged
-        keys : names and values as in the file. None removes a key; the keys of a mapping are
-            changed one by one
+            environment; None for no change
+        keys : names and values as in the file. None removes a key; a mapping changes only the keys
+            that it contains
 
         Raises
         ------
@@ -167,7 +166,7 @@ def below_the_seabed(file: MooringFile, solution: Solution, depth: float) -> Flo
     """Return the distance of each node below the seabed, shape (k + 1,) [m]; NaN outside the depth
     grid.
 
-    `depth` is the water depth at the origin or, for a leg, at its anchor [m].
+    `depth` is the water depth at the anchor of the leg, or at the origin without an anchor [m].
     """
     seabed, place = file.environment.seabed, solution.position
     assert seabed is not None

@@ -32,12 +32,13 @@ class ProfilerPlace:
 
 @dataclass(frozen=True)
 class ProfilerTravel:
-    """Results for a profiler at its upper and lower stop, and at the position with the largest wire
-    tilt.
+    """Results for a profiler at three positions: upper stop, lower stop, and largest wire tilt.
 
-    `distance` is the unstretched distance between the stops [m], `time` the duration of a profile
-    [s], and `profiles` the number of profiles per battery set. `time` and `profiles` are None if
-    the speed or the endurance is unknown.
+    Attributes
+    ----------
+    distance : unstretched distance between the stops [m]
+    time : duration of a profile [s]; None if unknown
+    profiles : number of profiles per battery set; None if unknown
     """
 
     label: str
@@ -53,8 +54,7 @@ def profilers_of(leg: Leg) -> tuple[ProfilerTravel, ...]:
     """Solve a line with one profiler at a time along its path, and the other profilers at their
     upper stops.
 
-    Raises NoEquilibrium if there is no equilibrium with a profiler at one of its `PLACES`
-    positions.
+    Raises NoEquilibrium if there is no equilibrium at one of the `PLACES` positions.
     """
     return tuple(_travel(leg, clamp) for clamp in profilers_in(leg))
 
@@ -101,10 +101,7 @@ def _found(leg: Leg, clamp: Clamp, at: float) -> ProfilerPlace:
 def held(file: MooringFile, place: Place | None = None, at: float = 0.0) -> MooringFile:
     """Return a copy of a file in which no profiler travels; one profiler may be moved.
 
-    Parameters
-    ----------
-    place : place in the file of the profiler to move; None to move none
-    at : new unstretched distance of this profiler from the top of its wire [m]
+    The profiler at `place` moves to the unstretched distance `at` from the top of its wire [m].
     """
 
     def unmoved(clamp: Clamp) -> Clamp:

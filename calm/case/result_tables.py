@@ -1,9 +1,8 @@
 """Registry of result columns, and the tables of these columns.
 
-A table stores one array per column and creates records and data frames on demand. To add a column,
-add a field with its entry to the class of the rows. A computation longer than one line belongs in
+To add a column, add a field with its entry to the class of the rows; longer computations belong in
 `calm.case.line_figures`. `OF_ROWS`, `MOORED_ENDS` and `TOWED_ENDS` list columns that appear in
-outputs only, not in tables.
+outputs only.
 """
 
 from __future__ import annotations
@@ -94,10 +93,7 @@ class ColumnTable(Columnar, Generic[Row]):
     def made(cls, parts: Sequence[Any], value: Callable[[ResultColumn], Any]) -> Self:
         """Build a table of pieces or clamps of a file, and compute its derived columns.
 
-        Parameters
-        ----------
-        parts : the piece or clamp of each row
-        value : function that computes each column that has neither `of_part` nor `derived`
+        The function `value` computes each column that has neither `of_part` nor `derived`.
         """
         known: dict[str, Any] = {}
         for one in cls.columns():
@@ -190,8 +186,8 @@ def _known(value: Any) -> Any:
 
 
 class LineEnd(NamedTuple):
-    """Input for the row of an anchor: the row above it, the piece of the anchor, and the water
-    depth [m].
+    """Input for the row of an anchor: the row above the anchor, the piece of the anchor, and the
+    water depth [m].
     """
 
     above: ComponentRow
@@ -512,11 +508,9 @@ column whose value is None.
 class Components(ColumnTable[ComponentRow]):
     """Table of the n pieces of the line, in file order. NaN stands for unknown values.
 
-    The pieces of a mooring are listed from the free end down, with the anchor last; the pieces of a
-    tow are listed from the ship down. The columns are the fields of `ComponentRow`, each with n
-    values; `part`, `use`, `label`, `kind` and `role` are lists. Lengths, depths and offsets are in
-    m, tensions in N, and `tilt` in degrees. x and y are distances to the east and north of the
-    anchor or the tow point, and depths are positive down. `knockdown` is NaN in a tow.
+    A mooring is listed from the free end down, with the anchor last; a tow from the ship down. The
+    columns are the fields of `ComponentRow`, in m, N and degrees. x and y are distances to the east
+    and north of the anchor or the tow point; depths are positive down. `knockdown` is NaN in a tow.
     """
 
     record = ComponentRow
@@ -525,9 +519,8 @@ class Components(ColumnTable[ComponentRow]):
 class Clamps(ColumnTable[ClampRow]):
     """Table of the m clamped instruments, in file order.
 
-    The columns are the fields of `ClampRow`, each with m values. `tension` is the larger of the
-    tensions above and below the clamp [N]. `tilt` is the angle of the sum of these tensions or, on
-    a rigid piece, the tilt of the piece [degrees].
+    The columns are the fields of `ClampRow`. `tension` is the larger of the tensions above and
+    below the clamp [N]. For `tilt`, see `calm.case.line_figures.ClampFigures`.
     """
 
     record = ClampRow
@@ -869,8 +862,8 @@ def rows_by_place(result: WithClamps) -> dict[Place, ComponentRow | ClampRow]:
 def item_numbers(*results: WithClamps) -> dict[str, str]:
     """Return the item number of each piece and clamp, by label; all documents use these numbers.
 
-    Pieces are numbered from 1 through all `results`, which may be the legs of a net. A clamp has
-    the number of its piece, followed by a letter.
+    Pieces are numbered from 1 through all `results`. A clamp has the number of its piece and a
+    letter, such as ``3a``.
     """
     found: dict[str, str] = {}
     rows = (row for result in results for row in rows_down(result))

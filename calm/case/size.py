@@ -36,10 +36,8 @@ class Trial:
     Attributes
     ----------
     value : value of the parameter, in the unit of the adjustment
-    measured : value of the target's quantity, in SI units and degrees; None without an equilibrium
-    result : the solved mooring, or None
-    failure : reason why there is no equilibrium
-    place : place of the part whose depth and excursion are reported; by default the top of the line
+    measured : value of the target's quantity, in SI units or degrees; None without an equilibrium
+    place : part whose depth and excursion are reported; by default the top of the line
     """
 
     value: float
@@ -58,15 +56,14 @@ class Trial:
 
 @dataclass(frozen=True)
 class Sizing:
-    """Outcome of a sizing.
+    """Smallest change of a parameter with which a mooring meets a target.
 
     Attributes
     ----------
-    target, change : the target, and the parameter that is varied
     range : smallest and largest value of the parameter
     status : ``met``, ``met-already`` (nothing to change) or ``not-met``
-    before, after : the original mooring, and the mooring with the smallest change that meets the
-        target, both solved with the settings of the file; `after` is None if the target is not met
+    before : the original mooring
+    after : the mooring with the smallest change that meets the target, or None
     message, advice : reason why the target is not met, and advice
     steady : whether the target's quantity is monotonic over the values tried
     solves : number of equilibria computed
@@ -135,20 +132,19 @@ def size(
 ) -> Sizing:
     """Find the smallest change of a parameter that makes a mooring meet a target.
 
-    Every value tried is solved as in `Design.solve`, and the lengths of fitted pieces are computed
-    again.
+    The lengths of fitted pieces are computed for every value tried.
 
     Parameters
     ----------
     target : e.g. ``knockdown(top) <= 20 m``, see `calm.case.targets`
     change : e.g. ``top float.buoyancy``, see `calm.case.adjustment`
-    between : smallest and largest value, with units. By default a buoyancy may be 0 to 100 times
-        its present value, a length at most twice the water depth, and a count at most 1000
+    between : smallest and largest value, with units. By default: buoyancy 0 to 100 times the
+        present value, length at most twice the water depth, count at most 1000
 
     Raises
     ------
     UsageError
-        Target, change or range are invalid (all mistakes are reported), or the design is a tow.
+        Target, change or range are invalid, or the design is a tow.
     """
     refuse_tow(mooring.file)
     wanted, adjustment, limits = _understood(mooring, target, change, between)

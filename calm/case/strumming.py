@@ -19,8 +19,8 @@ from calm.solve.audit import amplification, flow_across
 class Strumming:
     """Strumming of the cables: frequency [Hz], and range of the normal drag coefficient Cn.
 
-    All segments of a towed cable strum at the same `frequency`. For a mooring, `frequency` is the
-    highest shedding frequency of its cables.
+    All segments of a towed cable strum at one frequency. The `frequency` of a mooring is the
+    highest shedding frequency of the cables.
     """
 
     frequency: float
@@ -55,16 +55,15 @@ mooring lines.
 
 @dataclass(frozen=True)
 class StrummingBand:
-    """Results for the line with the Cn of all cables multiplied by `factor`.
+    """Results for the line with the drag coefficient Cn of all cables multiplied by a factor.
 
-    If there is no equilibrium, depth, knockdown and tension are None.
+    Without an equilibrium, depth, knockdown and tension are None.
 
     Attributes
     ----------
     factor : factor on Cn [-]
-    status : status of the solver for this line
     depth : depth of the top of a mooring, or of a towed body [m]
-    knockdown : knockdown of the top of a mooring [m]; None if the shape in still water is not
+    knockdown : knockdown of the top [m]; None for a tow, or if the shape in still water is not
         unique
     tension : tension at the anchor or the ship [N]
     """
@@ -79,9 +78,8 @@ class StrummingBand:
 def band_of(leg: Leg, still_depth: float | None = None) -> StrummingBand | None:
     """Solve a line with increased drag on its cables.
 
-    `still_depth` is the depth of the top of the line in still water [m].
-
-    Return None if no cable can strum, or if the file sets a strumming law.
+    The depth of the top in still water is `still_depth` [m]. Return None if no cable can strum, or
+    if the file sets a strumming law.
     """
     line, cables = leg.line, leg.line.diameter > 0.0
     if leg.file.solver.strumming is not None or not (line.normal_drag[cables] > 0.0).any():

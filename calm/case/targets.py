@@ -45,13 +45,11 @@ class Target:
 
     Attributes
     ----------
-    text : the original text
     quantity : one of `QUANTITIES`
     label, place : label and place of the part; None for the top of the line and for the required
-        anchor weight. In a net, however, the required anchor weight has the name of the leg as its
-        `label`
+        anchor weight. In a net, the `label` of the required anchor weight is the name of the leg
     relation : ``<=``, ``>=`` or ``=``
-    limit : limit, in SI units or degrees
+    limit : in SI units or degrees
     """
 
     text: str
@@ -83,17 +81,10 @@ class Target:
 def parse_target(text: str, file: MooringFile) -> Target:
     """Parse a target, e.g. ``tilt(current meter 2) <= 5 deg`` or ``required_weight <= 8 kN``.
 
-    Parameters
-    ----------
-    text : a quantity, the part of the line in brackets (by default ``top``), ``<=``, ``>=``
-        or ``=``, and a limit with its unit
-    file : mooring in which labels are looked up. In a net with several anchors, the required weight
-        has the name of a leg in brackets: ``required_weight(stem) <= 8 kN``
-
-    Raises
-    ------
-    UsageError
-        The text is invalid; the message points to the mistake and suggests a correction.
+    The text has a quantity, the label of a part in brackets (by default ``top``), a relation, and a
+    limit with its unit. With several anchors, the required weight needs the name of a leg:
+    ``required_weight(stem) <= 8 kN``. Raises UsageError, which points to the mistake, if the text
+    is invalid.
     """
     text = " ".join(text.split())
     found = _FORM.fullmatch(text)
@@ -140,9 +131,9 @@ def parse_target(text: str, file: MooringFile) -> Target:
 def spot_of(result: Result, place: Place | None = None) -> dict[str, Any]:
     """Return depth, excursion and knockdown [m], tilt [degrees] and tension [N] of a part.
 
-    For a piece, depth, excursion and knockdown refer to its upper end, and the tension is the
-    maximum in the piece. The knockdown is None if the line has no unique shape in still water. The
-    default part is the top of the line.
+    Depth, excursion and knockdown of a piece are those of its upper end; the tension is the maximum
+    in the piece. The knockdown is None if the shape in still water is not unique. The default part
+    is the top of the line.
     """
     row: ComponentRow | ClampRow = result.components[0]
     if place is not None:
@@ -159,14 +150,15 @@ def spot_of(result: Result, place: Place | None = None) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Figures:
-    """Eight summary values of a solved mooring: lengths [m], forces [N].
+    """Summary values of a solved mooring: lengths [m], forces [N]. Anchor values are None without
+    an anchor.
 
     Attributes
     ----------
     depth, knockdown, excursion : values at the line's top or at another part
     used_buoyancy : used fraction of the surface float's buoyancy; 1 if the float is submerged
-    tension, vertical, horizontal, required_weight : load on the anchor, and required weight of the
-        anchor; None if there is no anchor
+    tension, vertical, horizontal : load on the anchor
+    required_weight : required weight of the anchor
     """
 
     depth: float
@@ -180,11 +172,9 @@ class Figures:
 
 
 def figures_of(result: Result, place: Place | None = None) -> Figures:
-    """Return the summary values of a result. Positions refer to the part at `place`, by default the
-    top.
+    """Return the summary values of a result, with the position of a part, by default the top.
 
-    If there are several anchors, the values of the anchor with the largest required weight are
-    returned.
+    With several anchors, the anchor values are those of the largest required weight.
     """
     spot, leg = spot_of(result, place), leg_at(result, place)
     anchor = max(result.anchors, key=lambda one: one.required_weight or 0.0, default=None)

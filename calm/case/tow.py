@@ -22,10 +22,7 @@ def at_speed(tow: Design, speed: float) -> Design:
 def sweep(tow: Design, speeds: Iterable[float]) -> list[Result | NoEquilibrium]:
     """Solve a tow at several ship speeds > 0 [m/s].
 
-    Each item is a result, or the reason why there is no equilibrium at this speed.
-
-    Speeds are solved one at a time. The speed in the file only determines the length of a fitted
-    cable; NoEquilibrium is raised if no length of this cable reaches the required depth at that
-    speed.
+    The item for a speed without equilibrium is the reason. Raises NoEquilibrium if the tow has a
+    fitted cable that cannot reach the required depth at the speed in the file.
     """
     return [or_why_not(at_speed(tow, speed).solve) for speed in speeds]

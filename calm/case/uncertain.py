@@ -1,7 +1,6 @@
 """Uncertainty of a mooring's results, from solutions for many random draws of its inputs.
 
-Every sample is solved with the segments of the original mooring, or from scratch if this search
-finds no equilibrium of the same kind. Each sample must pass every check of a solution.
+Every sample passes every check of a solution.
 """
 
 from __future__ import annotations
@@ -48,21 +47,21 @@ class Contribution:
 class Uncertain:
     """Percentiles `LEVELS` of the results of a mooring with uncertain inputs.
 
+    All values exclude samples without an equilibrium. The p pieces include the anchor as the last
+    piece.
+
     Attributes
     ----------
-    result : result of the original mooring
     samples, seed : size and seed of the random sequence
-    failures : number of samples without equilibrium, by status; all other values are for the
-        remaining samples
-    depth_top, knockdown, tilt, tension : (3, p) values of the p pieces, with the anchor last [m],
-        [m], [degrees], [N]; knockdown is NaN if the line has no unique shape in still water
+    failures : number of samples without equilibrium, by status
+    depth_top, knockdown, tilt, tension : (3, p) in m, m, degrees and N; knockdown is NaN if the
+        line has no unique shape in still water
     offset : (3, p) horizontal distance of the top of each piece from the anchor, in the direction
         of the free end [m]
-    clamps : (3, 4, m) depth, knockdown, tilt and tension of the m clamps above the anchor, in the
-        same units
+    clamps : (3, 4, m) depth, knockdown, tilt and tension of the m clamps above the anchor
     anchor_tension, required_weight : (3,) anchor tension and required anchor weight [N]
-    contributions : contributions of the inputs to the variance of the top's knockdown or, for a
-        top at the surface, of the top's excursion; empty if there is no variance
+    contributions : contributions of the inputs to the variance of the top's knockdown; for a
+        surface mooring or an unknown knockdown, of the top's excursion; empty without variance
     unexplained : fraction of this variance that the fit does not explain
     """
 
@@ -141,12 +140,10 @@ def uncertain(
 
     Parameters
     ----------
-    result : result of a mooring; `uncertainty` in its file defines the distributions of the inputs
+    result : result of a mooring whose file defines the `uncertainty` of the inputs
     samples : a power of two from `FEWEST` to `MOST`
-    seed : seed of the scrambling; the same seed gives the same results
     mapped : function that applies the solver to blocks of samples, like `map`
-    normals : function that returns `normals_of(samples, seed)`; another process may have computed
-        the numbers
+    normals : function that returns `normals_of(samples, seed)`
 
     Raises
     ------
@@ -244,12 +241,11 @@ FEWEST = 4
 
 @dataclass(frozen=True)
 class Indices:
-    """Sobol' indices: fractions of a quantity's variance that each input explains.
+    """Sobol' indices: fractions of a quantity's variance that each of k inputs explains.
 
     Attributes
     ----------
-    first : (k,) first-order index of each input
-    total : (k,) total index of each input
+    first, total : (k,) first-order index and total index of each input
     unexplained : fraction that no term of the fit explains
     """
 
@@ -261,17 +257,15 @@ class Indices:
 def sobol_indices(normals: Floats, values: Floats) -> Indices | None:
     """Estimate the Sobol' indices of a quantity from samples, by a fit of Hermite polynomials.
 
-    A quantity y of independent standard normal inputs z is expanded as y = Σ c_a ψ_a(z), where the
-    ψ_a are products of normalised Hermite polynomials. These are orthonormal, so c_a² is the
-    contribution of a term to the variance. The sum over all terms of one input alone gives its
-    first-order index, and the sum over all terms that contain the input its total index. The
-    coefficients are found by least squares (Sudret, Reliability Engineering and System Safety 93,
-    2008, 964-979).
+    The fit is y = Σ c_a ψ_a(z), where the ψ_a are products of normalised Hermite polynomials. Each
+    c_a² contributes to the variance (Sudret, Reliability Engineering and System Safety 93, 2008,
+    964-979). The first-order index of an input sums the terms of this input alone, the total index
+    all terms with the input.
 
     Parameters
     ----------
-    normals : (n, k) independent standard normal inputs
-    values : (n,) values of the quantity for these inputs
+    normals : (n, k) independent standard normal inputs z
+    values : (n,) values of the quantity y
 
     Returns
     -------

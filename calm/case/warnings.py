@@ -41,11 +41,10 @@ def is_synthetic(component: Component) -> bool:
 
 
 def counted_working_load(component: Component) -> float | None:
-    """Return the working load used to check a component [N], or None if there is none.
+    """Return the working load used to check a component [N], or None.
 
-    Tables of synthetic ropes list a working load for lifting, which is a twelfth to a seventh of
-    the breaking load. Therefore, if the breaking load of such a rope is known, only the breaking
-    load is checked.
+    The result for a synthetic rope with a known breaking load is None, because the working load in
+    rope tables is for lifting.
     """
     if is_synthetic(component) and component.breaking_load is not None:
         return None
@@ -147,8 +146,8 @@ def _stiffness_unknown(result: _Measured, _: Solution) -> Iterator[str]:
 def unknown_stretch(component: Component, tension: float) -> list[float] | None:
     """Return the strains of a synthetic rope at a tension, for each published stiffness [-].
 
-    The strains are in decreasing order; the list is empty if no stiffness is published. Return None
-    if the component is not a synthetic rope, or if its definition specifies a stiffness.
+    The strains decrease. Return None if the component is not a synthetic rope, or if its definition
+    specifies a stiffness.
     """
     if not isinstance(component, Cable) or not is_synthetic(component):
         return None
@@ -204,11 +203,10 @@ def _fast_flow(result: _Measured, _: Solution) -> Iterator[str]:
 
 
 def fast_pieces(result: _Measured) -> list[tuple[ComponentRow, float]]:
-    """Return the spheres and cylinders whose Reynolds number exceeds the valid range of their drag
+    """Return spheres and cylinders with Reynolds numbers above the valid range of the drag
     coefficient.
 
-    Each piece is returned with the upper limit of its range. The piece that exceeds this limit by
-    the largest factor is first.
+    Each piece has the upper limit of the range. The largest ratio to the limit is first.
     """
     curves = [*result.leg.line.drag_curve, None]
     rows = [
@@ -336,8 +334,7 @@ def _hull_unknown(result: _Measured, solution: Solution) -> Iterator[str]:
 def buoyancy_of_sea_water(leg: Leg) -> tuple[Piece | Clamp, str] | None:
     """Return the first float whose buoyancy in fresh water is too high, and a message about it.
 
-    The change of a float's buoyancy with the density of the water follows from its displaced
-    volume, which may be unknown.
+    Without a displaced volume, the buoyancy of a float does not depend on the density of the water.
     """
     density = float(np.max(leg.water.density))  # at the surface alone, water may be fresher
     if density >= BRACKISH:

@@ -183,9 +183,8 @@ def stopped_by_a_signal(
 ) -> Iterator[Callable[[Progress], None]]:
     """Convert SIGINT and SIGTERM to KeyboardInterrupt while a batch runs.
 
-    A stop request of a queueing system then ends the batch like Ctrl-C, without temporary files.
-    Python ignores an exception that a signal handler raises during the callback of a weak
-    reference. For this case, the returned `progress` also raises KeyboardInterrupt.
+    A stop request of a queueing system then leaves no temporary files. The batch must use the
+    returned `progress`, which also raises KeyboardInterrupt after a signal.
     """
     if current_thread() is not main_thread():
         yield progress
@@ -197,6 +196,7 @@ def stopped_by_a_signal(
         raise KeyboardInterrupt
 
     def stopping(now: Progress) -> None:
+        # Python ignores an exception raised by a handler during the callback of a weak reference
         if came:
             raise KeyboardInterrupt
         progress(now)

@@ -66,8 +66,7 @@ def docs(*words: str, open_: Annotated[bool, Parameter(name="--open")] = False) 
 def _list_pages(words: str, texts: dict[str, Path], built: dict[str, Path]) -> None:
     """List the pages that contain most of the words, with name, title and a line of text.
 
-    Pages with more of the words in their headings come first, then pages in which the words are
-    more frequent.
+    Pages with the words in headings come first, then pages in which the words are frequent.
     """
     from calm.errors import unknown
     from calm.whole_file import read_text

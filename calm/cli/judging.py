@@ -25,10 +25,8 @@ class Drawing(NamedTuple):
 
     Attributes
     ----------
-    alone : whether the report is about one mooring and has all its pages; otherwise it has a
-        summary and one page for each mooring
-    full : with several moorings, whether a PDF with all pages is also written for each mooring
-    page_size : page size
+    alone : whether the report has all pages of one mooring, or one page per mooring
+    full : whether each of several moorings also has a PDF with all pages
     """
 
     alone: bool = True
@@ -84,18 +82,16 @@ def judge(
     drawn: Drawing | None,
     draws: tuple[int, int] | None,
 ) -> list[CheckedMooring]:
-    """Check designs.
+    """Check designs against the design rules.
 
-    Accepted findings must be valid on the day of the report, which is today by default.
-
-    With many moorings, each process solves, checks and draws whole moorings. With few moorings,
-    their environments are distributed over the processes.
+    Accepted findings must be valid on the day of the report. With many moorings, each process
+    checks whole moorings; with few, the processes share the environments of a mooring.
 
     Parameters
     ----------
     workers : number of processes; None for one on each core
-    drawn : settings for the report; None without a report
-    draws : number of samples and seed for the probabilities; None without probabilities
+    drawn : settings for the report, if requested
+    draws : number of samples and seed for the probabilities, if requested
     """
     from calm.report.provenance import moment
 

@@ -147,17 +147,10 @@ app["--help"].group = app["--version"].group = Group("Options", sort_key=len(_GR
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a command line.
+    """Run a command line, and return an `ExitCode`.
 
-    Parameters
-    ----------
-    arguments : the words after ``calm``; by default the arguments of the process
-
-    Returns
-    -------
-    int
-        An `ExitCode`. No traceback is ever printed, unless the environment variable CALM_DEBUG is
-        1.
+    The arguments are the words after ``calm``, by default those of the process. A traceback is
+    printed only if the environment variable CALM_DEBUG is 1.
     """
     prepare()
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # searching for plugins takes time

@@ -62,11 +62,9 @@ def option(name: str) -> str:
 
 
 def show_units(given: str | None, files: Iterable[MooringFile] = ()) -> None:
-    """Set the units of tables and reports to the units in `given` or, without `given`, to the units
-    of the files.
+    """Set the units of tables and reports from an option or, without the option, from the files.
 
-    If the files have different units, SI is used. Raises UsageError if the text contains an unknown
-    dimension or unit.
+    Files with different units give SI. Raises UsageError if a dimension or unit is unknown.
     """
     from calm.errors import nearest
     from calm.files.logbook import nearest_unit
@@ -97,7 +95,7 @@ def quantities(**given: tuple[str | None, str]) -> dict[str, float]:
     """Convert quantities given as options to SI units and degrees.
 
     Each parameter is the text of the option (None if absent) and its dimension. Raises UsageError
-    with all texts that are not quantities of their dimension.
+    with all invalid texts.
     """
     from calm.units import QuantityError, parse_quantity
 
@@ -126,14 +124,8 @@ def from_one(**given: int | None) -> None:
 def span_of(option: str, text: str, between: tuple[float, float], in_words: str) -> np.timedelta64:
     """Parse a duration given as an option, such as ``2 h``.
 
-    Parameters
-    ----------
-    between, in_words : smallest and largest allowed duration [s], and both as text for the message
-
-    Raises
-    ------
-    UsageError
-        The text is not a duration, or is outside this range.
+    The allowed range is `between` [s], which the message states as `in_words`. Raises UsageError if
+    the text is not a duration in this range.
     """
     import numpy as np
 

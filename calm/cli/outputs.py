@@ -51,11 +51,9 @@ def _transliterated(error: UnicodeError) -> tuple[str, int]:
 def show(text: str, *, styled: bool = False) -> None:
     """Write text to standard output immediately.
 
-    On a terminal, control sequences are removed unless the text is `styled` by CALM. Files and
-    pipes get the text unchanged. A reader that stops early (``calm run m.yaml | head``) causes no
-    error.
-
-    Raises UsageError if the output cannot be written, e.g. because the disk is full.
+    On a terminal, control sequences are removed unless the text is `styled` by CALM. A reader that
+    stops early, such as ``head``, causes no error. Raises UsageError if the output cannot be
+    written.
     """
     try:
         print(text if styled or not _on_terminal() else printable(text), end="", flush=True)
@@ -203,8 +201,8 @@ class Outputs:
 
     Parameters
     ----------
-    files : the input files; empty for commands without input files
-    json : path of the JSON document, ``-`` for standard output; None if not requested
+    files : the input files, if the command has any
+    json : path of the JSON document, ``-`` for standard output
     written : further output files, whose suffixes select the formats
     suffixes : allowed suffixes of the further output files
     """
@@ -252,11 +250,11 @@ class Outputs:
                 check_destination(path)
 
     def write_answer(self, document: Callable[[], dict[str, Any]], part: ReportPart | None) -> None:
-        """Write the result of a command without input files.
+        """Print the result of a command without input files, and write its JSON document if
+        requested.
 
-        The JSON document is written if requested. `part` is printed, unless the JSON document is
-        printed. `document` is called only if JSON is requested; the version of CALM is added to the
-        document. Raises UsageError if a file cannot be written.
+        JSON on standard output replaces the printed `part`. Raises UsageError if a file cannot be
+        written.
         """
         from calm.report.result_files import to_json
 
@@ -272,11 +270,10 @@ class Outputs:
             save(self.json, text().encode())
 
     def write(self, shown: Sequence[Shown], to_csv: Callable[[], str]) -> None:
-        """Write the output files, then print the tables, or JSON if it is requested on standard
-        output.
+        """Write the output files, then print the tables, or JSON if requested on standard output.
 
-        `shown` has one entry per input file, in order. `to_csv` is called only if a CSV file is
-        requested. Raises UsageError if a file cannot be written.
+        `shown` has one entry per input file, in order. Raises UsageError if a file cannot be
+        written.
         """
         from calm.report.result_files import to_json
 

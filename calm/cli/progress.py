@@ -36,8 +36,7 @@ _FIRST_LINE, _NEXT_LINES = 10.0, 60.0  # seconds without a terminal
 class ProgressTeller:
     """Progress display in one line of the terminal; a call with a `Progress` updates the display.
 
-    With `patience` [s], the display appears when this time has passed since its creation. Without
-    `patience`, the elapsed time is counted from the first call.
+    The display appears after `patience` [s] or, without `patience`, soon after the first call.
     """
 
     def __init__(self, patience: float | None = None) -> None:
@@ -127,16 +126,14 @@ def mapped(
     what: str,
     meanwhile: Callable[[], object] | None = None,
 ) -> list[_Done]:
-    """Apply a function to every task in parallel, and show the progress. Results are in the order
-    of the tasks.
+    """Apply a function to every task in parallel, and show the progress. Results are in task order.
 
     Parameters
     ----------
     function : a module-level function, which another process can import
     workers : number of processes; None for one per core
     what : noun for the tasks, in the plural
-    meanwhile : function called in this process while other processes work, unless there are
-        none
+    meanwhile : function called in this process while other processes work
     """
     workers = min(workers or os.cpu_count() or 1, len(tasks))
     if workers < 2 or len(tasks) <= FEW:
@@ -164,8 +161,8 @@ def begun(
 ) -> Callable[[], _Done]:
     """Start a computation in another process, and return a function that waits for its result.
 
-    The function must be a module-level function, which another process can import. On a machine
-    with one core, the function runs in this process when the result is requested.
+    The computation must be a module-level function. On one core, this process computes the result
+    when the result is requested.
     """
     if (os.cpu_count() or 1) < 2:
         return partial(function, *given, **named)

@@ -62,7 +62,6 @@ def read_designs(
     Parameters
     ----------
     environments : names or files of environments; None for all environments of each file
-    workers : number of processes
     meanwhile : function called in this process while other processes read
 
     Raises

@@ -114,7 +114,6 @@ def solve_files(
     ----------
     explain, schematic : whether to explain each result, and to draw each line for the terminal
     draws : number of samples and seed for the uncertainty; None without uncertainty
-    verbose : whether to report solver statistics
     """
     drawn_often = None if draws is None else _uncertainty_solver(*draws)
     outcomes = []

@@ -101,11 +101,10 @@ def _swept(file: Path, tow: Design, speeds: Sequence[float]) -> TabulatedTow:
 
 
 def speed_range(text: str) -> list[float]:
-    """Return the speeds [m/s] of ``A:B:STEP``, from A up to B.
+    """Return the speeds [m/s] of ``A:B:STEP``, from A up to and including B.
 
-    B is included even if the last step is shorter. Raises UsageError if the text is not three
-    speeds with their units, if A or STEP is not positive, if B is below A, or if there are more
-    than `MOST_SPEEDS` speeds.
+    Raises UsageError if the text has another form, A or STEP is not positive, B is below A, or
+    there are more than `MOST_SPEEDS` speeds.
     """
     from calm.units import QuantityError, parse_quantity
 

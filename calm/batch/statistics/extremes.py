@@ -1,7 +1,5 @@
 """Return levels: values that a response exceeds once in a given number of years on average.
 
-There are two methods. The report states the rules of each method next to its levels:
-
 - GEV: the generalised extreme value distribution of annual maxima (Coles 2001, chapter 3).
 - POT: the generalised Pareto distribution of independent peaks over a threshold (Coles, chapter 4).
 """
@@ -61,10 +59,9 @@ class Level:
 
     Attributes
     ----------
-    period : return period T [years]. With GEV, the annual maximum exceeds the level in one of T
-        years on average; with POT, a peak exceeds the level once in T years on average
-    level : estimated return level
-    low, high : ends of the confidence interval; None for an end that the data do not determine
+    period : return period T [years]. The annual maximum (GEV) exceeds the level in one of T years,
+        a peak (POT) once in T years, on average
+    low, high : ends of the confidence interval; None if the data do not determine an end
     """
 
     period: int
@@ -81,10 +78,9 @@ class Fit:
     ----------
     method : a key of `METHODS`
     location, scale, shape : μ, σ and ξ; for POT, the location is the threshold
-    count : number of fitted maxima or peaks
-    rate : number of maxima or peaks per year
+    count, rate : number of fitted maxima or peaks, in total and per year
     rules : description of the selection of maxima or peaks
-    levels : return levels for the `PERIODS` that the record allows
+    levels : for the `PERIODS` that the record allows
     """
 
     method: str
@@ -110,17 +106,14 @@ def return_levels(
 ) -> tuple[Fit | LevelsRefused, Fit | LevelsRefused]:
     """Compute return levels with 95 % intervals, first by GEV and then by POT.
 
-    If a method has no levels, the reason is returned instead. No levels are computed if profiles
-    with a current were not solved. Solutions are most often missing in the strongest currents, so
-    levels from the remaining profiles would be too low.
+    A method without levels returns the reason. Levels require that all profiles with a current are
+    solved, except in weak currents (`calm.batch.statuses.IN_WEAK_CURRENT`).
 
     Parameters
     ----------
     time : (n,) times, ascending and evenly spaced except for gaps
     values : (n,) values of the quantity; NaN if missing
-    statuses : number of profiles by status, from `calm.batch.finished.statuses_of`. Unsolved
-        profiles are ignored if they have no data or a status in
-        `calm.batch.statuses.IN_WEAK_CURRENT`
+    statuses : number of profiles by status, from `calm.batch.finished.statuses_of`
     step : `median_step` of the times, if already known
     """
     refusal = _reason_if_censored(statuses) or _reason_against_fit(time, values)
@@ -286,10 +279,10 @@ def median_step(time: Times) -> np.timedelta64:
 def annual_maxima(
     time: Times, values: Column, step: np.timedelta64
 ) -> tuple[NDArray[np.float64], int]:
-    """Return the maximum of every complete year, and the number of all years, complete or not.
+    """Return the maximum of every complete year, and the number of all years.
 
-    Years of 365.25 days are counted from the first profile. A year is complete if it has at least
-    the fraction `WHOLE` of the possible values.
+    Years of 365.25 days are counted from the first profile. A complete year has at least the
+    fraction `WHOLE` of the possible values.
     """
     years = int((time[-1] - time[0]) // YEAR) + 1
     starts = np.searchsorted(time, time[0] + np.arange(years + 1) * YEAR)
@@ -304,12 +297,9 @@ def peaks_over(
 ) -> NDArray[np.float64]:
     """Find the maximum of each cluster of values above a threshold.
 
-    The extremal index θ is computed from the intervals T between the N exceedances, counted in time
-    steps. θ = 2 (ΣT)²/((N-1) ΣT²) if all T ≤ 2, else θ = 2 (Σ(T-1))²/((N-1) Σ(T-1)(T-2)); θ is at
-    most 1. The θN - 1 longest intervals separate the clusters (Ferro and Segers 2003, eq. 6 and
-    section 3), but successive exceedances are never separated, since in a record of a single storm
-    all intervals are equal. An interval across a gap counts in full, as if it contained no
-    exceedance.
+    With N exceedances and the extremal index θ, the θN - 1 longest intervals between exceedances
+    separate the clusters (Ferro and Segers 2003, eq. 6 and section 3). Exceedances in successive
+    time steps are never separated. An interval across a gap in the record counts in full.
     """
     over = np.flatnonzero(values > threshold)
     if len(over) < 2:
@@ -323,11 +313,10 @@ def peaks_over(
 
 
 def extremal_index(intervals: NDArray[np.float64]) -> float:
-    """Estimate the extremal index θ, the fraction of exceedances that are independent of previous
-    ones.
+    """Estimate the extremal index θ, the reciprocal of the mean cluster size of exceedances.
 
-    The intervals (N - 1,) between exceedances are in time steps and at least 1. A different
-    estimator is used if any interval exceeds 2.
+    The intervals T (N - 1,) are in time steps and at least 1. If all T ≤ 2, θ = 2 (ΣT)²/((N-1)
+    ΣT²), else θ = 2 (Σ(T-1))²/((N-1) Σ(T-1)(T-2)); θ ≤ 1 (Ferro and Segers 2003).
     """
     one, two = (1.0, 2.0) if intervals.max() > 2.0 else (0.0, 0.0)
     below = float(((intervals - one) * (intervals - two)).sum())

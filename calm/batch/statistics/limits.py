@@ -33,17 +33,15 @@ NOT_JUDGED = {
 
 @dataclass(frozen=True)
 class CountedLimit:
-    """A criterion of a rule, and its evaluation for all profiles of a batch.
+    """A criterion of a rule, and the evaluation of the criterion for all profiles of a batch.
 
     Attributes
     ----------
-    rule : rule of the design check
-    criterion : criterion of the rule
-    leg : leg to which the criterion applies; values missing from the catalogue are replaced by the
-        lower bounds of their estimates
+    leg : leg to which the criterion applies; lower bounds of estimates replace values missing from
+        the catalogue
     columns : column numbers of the leg in the batch result, if there are several legs
-    on_estimate : whether the limit is the lower bound of an estimate; a value beyond such a limit
-        is not necessarily a failure
+    on_estimate : whether the limit is such a lower bound; a value beyond the limit is then not
+        necessarily a failure
     """
 
     rule: Rule
@@ -71,10 +69,9 @@ def limits_of(mooring: Design) -> tuple[CountedLimit, ...]:
     """List all limits of a mooring that can be evaluated in a batch, by rule and then down the
     line.
 
-    The tension of a piece is the maximum or minimum of the tensions at its ends and at its clamps,
-    because a batch result has no tensions elsewhere. A line designed to reach the surface is always
-    checked as a surface mooring, even if its float is submerged. As in the design check, missing
-    values of a component are replaced by the lower bounds of their estimates.
+    Lower bounds of estimates replace values missing from the catalogue. A line designed to reach
+    the surface is checked as a surface mooring, even if its float is submerged. Tensions are
+    evaluated only at the ends and the clamps of a piece.
     """
     legs = LegColumns.of_file(mooring.file) if mooring.several else (None,)
     order = list(RULES)
@@ -137,9 +134,7 @@ def _least_tension(series: ResultColumns, part: JudgedPart, leg: Leg) -> Column:
 
 
 def _greatest_depth(series: ResultColumns, part: JudgedPart, leg: Leg) -> Column:
-    """Return the depth (n,) of the deeper end of a piece [m]; the lower end has the depth of the
-    next piece's top.
-    """
+    """Return the depth (n,) of the deeper end of a piece [m]; NaN for a piece at the surface."""
     depth = series.depth(_part_number(part))
     floats = depth <= (AT_SURFACE if reaches_the_surface(leg) else -np.inf)
     pieces = leg.file.pieces
@@ -191,14 +186,12 @@ _LYING = 1e-6  # share of the depth; parts closer to the seabed than this lie on
 class Exceedance:
     """Frequency with which a limit is exceeded in a batch.
 
-    `count` is the number of profiles in which the limit can be evaluated, and `share` the fraction
-    of these profiles that exceed the limit.
-
-    If the limit is an estimate, profiles that exceed the limit are excluded from both numbers.
-
-    `worst` is the value farthest beyond the limit or, if no value is beyond the limit, the value
-    closest to the limit. `time` is the time of this value. `worst` and `time` are None if there is
-    no limit or no value.
+    Attributes
+    ----------
+    count : number of profiles in which the limit can be evaluated. If the limit is an estimate,
+        profiles beyond the limit do not count
+    share : fraction of these profiles that exceed the limit
+    worst, time : most unfavourable value, and its time; None if `count` is 0
     """
 
     limit: CountedLimit
@@ -215,12 +208,10 @@ class RuleShare:
     Attributes
     ----------
     judged : number of profiles in which at least one limit of the rule is evaluated
-    fails, warns : fraction of these profiles in which the rule fails, and in which it warns but
-        does not fail; None if there are no such profiles
-    fails_at_most : upper bound of `fails`, which counts every unsolved profile with a current as a
-        failure; None if no profile is evaluated
-    unknown : number of limits that cannot be evaluated, usually because a value is missing
-    exceedances : frequency with which each limit is exceeded
+    fails, warns : fractions of these profiles that fail, and that warn but do not fail; None if
+        `judged` is 0
+    fails_at_most : upper bound of `fails`: unsolved profiles with a current count as failures
+    unknown : number of limits that no profile can evaluate, usually because a value is missing
     """
 
     name: str
@@ -236,7 +227,7 @@ class RuleShare:
 def equilibrium_share(ended: Mapping[Ending, int]) -> RuleShare:
     """Compute the fraction of profiles without equilibrium.
 
-    Profiles that did not converge are left out of this fraction.
+    The fraction excludes profiles that did not converge.
     """
     without = ended[Ending.NO_EQUILIBRIUM]
     judged = ended[Ending.SOLVED] + without
@@ -293,7 +284,7 @@ def _rule_share(
 def _exceedance(
     series: ResultColumns, limit: CountedLimit, beyond: NDArray[np.bool_], judged: NDArray[np.bool_]
 ) -> Exceedance:
-    """Compute how often a limit is exceeded. Profiles that exceed it are marked in `beyond`,
+    """Compute how often a limit is exceeded. Profiles beyond the limit are marked in `beyond`,
     profiles with a value in `judged`.
     """
     if limit.criterion.limit is None:

@@ -71,10 +71,8 @@ class LegColumns(NamedTuple):
 class ResultColumns:
     """Columns of a batch result over n profiles, with NaN for unsolved profiles.
 
-    A result file is ordered by profile. It is transposed once into a temporary file ordered by
-    column, so that columns can be read separately and memory use does not grow with the number of
-    components. The temporary file takes 4 bytes per number and is deleted at the end of the `with`
-    block.
+    A temporary file, deleted at the end of the `with` block, holds the result with 4 bytes per
+    number.
 
     Parameters
     ----------
@@ -86,12 +84,11 @@ class ResultColumns:
     ----------
     time : (n,) times of the profiles
     statuses : number of profiles by status
-    component_label, clamp_label : labels of the columns
 
     Raises
     ------
     UsageError
-        The result cannot be read, or there is not enough disk space for the temporary file.
+        The result cannot be read, or the disk space is too small.
     """
 
     def __init__(

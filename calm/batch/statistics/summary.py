@@ -70,8 +70,8 @@ class Response:
     Attributes
     ----------
     distribution : distribution over the profiles; None if there are no values
-    begin, low, high : start of each time interval in the plot, and the smallest and largest value
-        in the interval (NaN without values)
+    begin, low, high : start, minimum and maximum of each time interval in the plot; minimum and
+        maximum are NaN without values
     return_levels : return levels by GEV and by POT
     """
 
@@ -99,24 +99,20 @@ class WorstProfile:
 
 @dataclass(frozen=True)
 class Summary:
-    """All content of the report on a batch result.
+    """Content of the report on a batch result.
 
     Attributes
     ----------
-    name : name of the mooring
     count : number of profiles
-    endings : number of profiles by category of their status
-    statuses : number of profiles for each status that occurs
+    endings, statuses : number of profiles by category of status, and by status
     begin, end : times of the first and the last profile
     years : years represented by the solved profiles
     parts : the components in the order of the file, then the clamps
-    responses : statistics of each of the `RESPONSES`
     worst : worst profiles, the worst first, for each response in `RANKED`
     rules : the equilibrium rule, and the rules that can be evaluated in every profile
-    not_judged : reasons why the remaining rules are not evaluated, by the names of the rules
-    source : origin of the result, by the names in `SOURCE`
-    read : descriptions of the files from which the result was made
-    limits_used : limits used by the rules, each with its default
+    not_judged : reason why each remaining rule is not evaluated
+    source : attributes of the result named in `SOURCE`
+    read : descriptions of the input files of the result
     stops : stops of the profilers, down the line
     """
 
@@ -167,23 +163,21 @@ def summarize(
 ) -> Summary:
     """Build the summary of a finished result.
 
+    Statistics exclude unsolved profiles. Memory use is about 35 bytes per profile.
+
     Parameters
     ----------
     dataset : the result, opened without loading it
-    mooring : mooring for which the result was computed, and whose limits are evaluated
-    folder : folder for a temporary file, which is as large as the uncompressed result; by default
-        the temporary folder of the system
+    mooring : mooring of the result, whose limits are evaluated
+    folder : folder for a temporary file of the size of the uncompressed result; by default the
+        temporary folder of the system
     source : the file of the result, for messages
-
-    Unsolved profiles are counted but excluded from the statistics. All shares are fractions of the
-    profiles, and hence of the time if the record is evenly spaced. Memory use is about 35 bytes per
-    profile, whatever the number of components.
 
     Raises
     ------
     UsageError
-        The dataset is not a result of `calm batch`, or cannot be read; or there is not enough disk
-        space for the temporary file.
+        The dataset is not a result of `calm batch` or cannot be read, or the disk space is too
+        small.
     """
     with ResultColumns(dataset, folder, source) as series:
         ended = endings(series.statuses)
@@ -271,14 +265,15 @@ RANKED = ("knockdown", "anchor_tension", "tilt")
 
 
 _LegColumns = Mapping[str, Sequence[ResultColumns]]
-"""Columns by response, for a line or for the legs of a net; the response is their maximum."""
+"""For each response, the columns of a line or of the legs of a net. The response of a net is the
+maximum over the legs.
+"""
 
 
 def _columns_of(series: ResultColumns, mooring: Design) -> _LegColumns:
     """Select the columns from which each response is computed.
 
-    For a net, these are the columns of the legs with a free end or an anchor. Offsets are relative
-    to the anchor of the same leg.
+    For a net, these are the columns of the legs with a free end or an anchor.
     """
     if not mooring.several:
         return dict.fromkeys(RESPONSES, (series,))
@@ -363,13 +358,11 @@ class Distribution:
 
     Attributes
     ----------
-    count : n
-    mean : mean over the profiles
-    percentiles : values at `PERCENTILES`, interpolated linearly between the sorted values; the p
-        quantile has the rank 1 + (n - 1) p (definition 7 of Hyndman and Fan 1996)
-    maximum, time : the maximum, and the time at which it is first reached
-    share, value : exceedance curve. A fraction `share` of the profiles reaches or exceeds `value`,
-        which is the quantile 1 - share. The shares are 1/n and all values in `SHARES` above 1/n.
+    percentiles : values at `PERCENTILES`; the p quantile has the rank 1 + (n - 1) p (definition 7
+        of Hyndman and Fan 1996)
+    maximum, time : the maximum, and its first time
+    share, value : exceedance curve: a fraction `share` of the profiles reaches or exceeds `value`.
+        The shares are 1/n and all `SHARES` above 1/n
     """
 
     count: int

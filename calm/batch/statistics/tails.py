@@ -28,8 +28,7 @@ LEAST_SHAPE = -0.5
 
 SHAPES = (-1.0, 2.0)
 """Searched range of the shape parameter. At -1 and below, the likelihood has no maximum (Coles
-2001, §3.3.2). The upper bound is a choice of CALM: from 1 on even the mean is infinite, whereas
-forces and depths have finite means.
+2001, §3.3.2). The upper bound is a choice of CALM: from 1 on, even the mean is infinite.
 """
 
 _AT_BOUND = 0.01  # our choice: a hundred times the accuracy of the search for a shape
@@ -45,14 +44,13 @@ class NotFitted(Exception):
 
 @dataclass(frozen=True)
 class Tail:
-    """A fitted generalised extreme value distribution or generalised Pareto distribution.
+    """A fitted generalised extreme value distribution (GEV) or generalised Pareto distribution.
 
     Attributes
     ----------
-    location, scale : μ, σ, in the unit of the values; the location of a Pareto distribution is
-        its threshold
-    shape : ξ; a tail with ξ < 0 has a finite end, a tail with ξ > 0 decreases slowly
-    maxima : whether the distribution describes maxima (GEV) or peaks over a threshold (Pareto)
+    location, scale : μ, σ, in the unit of the values; a Pareto location is the threshold
+    shape : ξ; a tail with ξ < 0 has a finite end
+    maxima : whether the distribution describes maxima (GEV) or peaks (Pareto)
     values : (n,) fitted maxima or peaks
     """
 
@@ -65,19 +63,16 @@ class Tail:
     def level(self, growth: float) -> float:
         """Return the level μ + σ (e^{ξ g} - 1)/ξ for a return period of T years.
 
-        The variable g is -log(-log(1 - 1/T)) for annual maxima (Coles 2001, eq. 3.4), and log(λ T)
-        for λ independent peaks per year (eq. 4.12 with λ instead of the rate of exceedances).
+        The growth g is -log(-log(1 - 1/T)) for annual maxima (Coles 2001, eq. 3.4). For λ
+        independent peaks per year, g is log(λ T) (eq. 4.12, with λ for the rate of exceedances).
         """
         return self.location + self.scale * _grown(self.shape, growth)
 
     def interval(self, growth: float) -> tuple[float | None, float | None]:
-        """Return both ends of the `CONFIDENCE` interval of a return level.
+        """Return both ends of the `CONFIDENCE` interval of a return level, by profile likelihood.
 
-        For each possible level, the likelihood is maximised over the other parameters; L is this
-        maximum, and L₀ is the likelihood of the fit. The interval contains the levels for which
-        2 ln(L₀/L) is less than `CHI_SQUARE` (Coles 2001, §2.6.6, §3.3.4, §4.3.3). An end is None if
-        it is more than 100 standard deviations away from the estimate, because the data then do not
-        bound the level. Raises NotFitted if the search for a maximum fails.
+        An end is None if it is more than 100 standard deviations of the data away from the estimate
+        (Coles 2001, §2.6.6, §3.3.4, §4.3.3). Raises NotFitted if a likelihood cannot be maximised.
         """
         estimate = self.level(growth)
         best = _loss(self.values, self.location, self.scale, self.shape, self.maxima)
@@ -110,14 +105,8 @@ class Tail:
 def fit_maxima(values: Floats) -> Tail:
     """Fit a generalised extreme value distribution by maximum likelihood (Coles 2001, eq. 3.7-3.9).
 
-    Parameters
-    ----------
-    values : (n,) independent maxima of blocks of equal length, not all equal
-
-    Raises
-    ------
-    NotFitted
-        The search failed, or ended at a bound of `SHAPES`.
+    The values (n,) are independent maxima of equal blocks, not all equal. Raises NotFitted if the
+    fit fails or ends at a bound of `SHAPES`.
     """
     middle, spread = float(values.mean()), float(values.std())
     scaled = (values - middle) / spread
@@ -134,14 +123,8 @@ def fit_maxima(values: Floats) -> Tail:
 def fit_excesses(values: Floats, threshold: float) -> Tail:
     """Fit a generalised Pareto distribution by maximum likelihood (Coles 2001, eq. 4.10-4.11).
 
-    Parameters
-    ----------
-    values : (n,) independent peaks, all above the threshold
-
-    Raises
-    ------
-    NotFitted
-        The search failed, or ended at a bound of `SHAPES`.
+    The values (n,) are independent peaks above the threshold. Raises NotFitted if the fit fails or
+    ends at a bound of `SHAPES`.
     """
     size = float(values.mean()) - threshold
     scaled = (values - threshold) / size
@@ -172,7 +155,7 @@ def _grown(shape: float, growth: float) -> float:
 def _loss(values: Floats, location: float, scale: float, shape: float, maxima: bool) -> float:
     """Return the negative log-likelihood, which is infinite if a value is impossible.
 
-    With s = log(1 + ξ (x - μ)/σ)/ξ each value adds log σ + (1 + ξ) s, and for maxima also e^{-s}.
+    With s = log(1 + ξ (x - μ)/σ)/ξ, a value adds log σ + (1 + ξ) s; a maximum adds e^{-s} more.
     """
     if not (SHAPES[0] < shape < SHAPES[1] and scale > 0.0):
         return inf
