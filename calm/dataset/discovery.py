@@ -77,8 +77,8 @@ def coverage(
 
     Parameters
     ----------
-    time : times of the result, ascending
-    depth : depths of the data [m], of any shape; NaN if unknown
+    time : times, ascending
+    depth : depths [m], of any shape; NaN if unknown
     place : latitude and longitude [degrees]; empty if unknown
     """
     first, last = (np.datetime_as_string(one, "s") + "Z" for one in (time[0], time[-1]))
@@ -152,9 +152,7 @@ def with_flags(
 
     Parameters
     ----------
-    variables : variables of the result
-    names : names of the flagged variables, each with the names of its other ancillary variables,
-        such as standard deviations
+    names : for each flagged variable, the names of its other ancillary variables
     cell_methods : CF attribute `cell_methods` of the flagged variables
     """
     found = []
