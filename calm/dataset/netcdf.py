@@ -222,7 +222,7 @@ def of_net(
 
 @dataclass(frozen=True)
 class Variable:
-    """NetCDF variable. A time-dependent variable is written in blocks, so its `values` are None."""
+    """NetCDF variable; `values` is None for a time-dependent variable."""
 
     name: str
     dimensions: tuple[str, ...]
@@ -303,6 +303,7 @@ def down_the_line(sizes: Mapping[str, int]) -> list[Variable]:
 
     In the sense of CF, these numbers are dimensionless vertical coordinates.
     """
+    # depths vary in time, and adjacent parts may have equal depths
     return [
         Variable(
             name, (name,), "<i4",

@@ -32,12 +32,12 @@ THE_DESIGN = "the design"
 
 @dataclass(frozen=True)
 class Limit:
-    """Annotation that gives a key of `checks:` its default and the source of the default.
+    """Annotation of a key of `checks:` with its default and the source of the default.
 
     Attributes
     ----------
     source : source of the default; `THE_DESIGN` for a limit without a default
-    default : default [SI, degrees] to use if the value in the model is None
+    default : default [SI, degrees], if the model gives none
     """
 
     source: str = THIS_PROGRAM
@@ -192,9 +192,8 @@ class LimitKey:
     dimension : dimension, as in `calm.units`
     value : limit in use [SI, degrees]; None if there is no limit
     default : default [SI, degrees]; None without a default
-    source : source of the default
     backed : False if an item of the line overrides the default without giving a source
-    share : whether the value is a fraction, which is displayed in percent
+    share : whether the value is a fraction, displayed in percent
     """
 
     name: str
@@ -286,8 +285,10 @@ class AcceptKeys(definition.Model):
 class Accept(AcceptKeys):
     """An item of `checks: accept:`, by which the designer accepts findings of a rule.
 
-    `labels` are the labels of the pieces and clamps to which the item applies; None means all
-    findings of the rule. `line` is the line number of the item in the mooring file.
+    Attributes
+    ----------
+    labels : labels of the pieces and clamps concerned; None for all findings of the rule
+    line : line number in the mooring file
     """
 
     labels: tuple[str, ...] | None
@@ -308,11 +309,7 @@ def read_accepts(
 ) -> tuple[Accept, ...]:
     """Read the accepted findings in a mooring file, sorted from most to least specific.
 
-    Parameters
-    ----------
-    keys : items of `checks: accept:`
-    labels : labels of the pieces and clamps in the line; None if the line has mistakes
-    top : top level of the mooring file
+    `labels` are the labels of the pieces and clamps in the line; None if the line has mistakes.
     """
     found = [_accept(one, number, labels, top) for number, one in enumerate(keys)]
     known = labels or ()
@@ -340,11 +337,10 @@ def _accept(
 
 
 def matching(component: str, labels: Iterable[str]) -> list[str]:
-    """Return the labels that match `component`, which is a label or a pattern.
+    """Return the labels that equal a text or match a pattern; letter case matters.
 
-    A text that equals a label matches only that label. In a pattern, ``*`` matches any
-    characters, ``?`` matches one character, and ``[ab]`` matches a or b. Matching is
-    case-sensitive.
+    A text that equals a label matches only that label. Otherwise, ``*`` stands for any characters,
+    ``?`` for one character, and ``[ab]`` for a or b.
     """
     labels = list(labels)
     if component in labels:

@@ -192,17 +192,12 @@ class Deployed(definition.Model):
 def check_deployed(
     deployed: Deployed, labels: Sequence[str], cables: Sequence[str], top: SourceMapping
 ) -> None:
-    """Check the deployed items of a mooring file.
-
-    Each item must be a part of the line and may be listed only once. Only cables and chains may
-    have a length.
+    """Check that deployed items are parts of the line, listed once, and lengths are of cables.
 
     Parameters
     ----------
-    deployed : the deployment
     labels : labels of all pieces and clamps in the line
     cables : labels of the cables and chains in the line
-    top : top level of the mooring file
     """
     seen: set[str] = set()
     for number, item in enumerate(deployed.items):

@@ -26,8 +26,7 @@ def without_colon(text: str) -> str:
 def syntax_mistakes(text: str, error: MarkedYAMLError) -> list[Mistake]:
     """Explain an error of the YAML parser; return one or more mistakes with their positions.
 
-    Every line that is indented with a tab is reported. For an error of an unknown kind, the result
-    is the message of the parser.
+    An error of an unknown kind keeps the message of the parser.
     """
     lines = text.splitlines()
     if "\\t" in str(error.problem):

@@ -75,7 +75,7 @@ class Located:
     warnings : warnings about geometry and consistency
     place : (3,) position east, north, up in the frame of the survey [m]
     second : another position that fits the ranges, or None
-    undecided : whether the position and `second` are about equally likely
+    undecided : whether the choice between the position and `second` is doubtful
     doubts : reasons not to write the position to a file without confirmation
     """
 
@@ -149,8 +149,8 @@ def locate(
     InputError
         The file of the ranges has mistakes.
     UsageError
-        There are fewer ranges than unknowns; the ranges do not intersect, are nearly horizontal, or
-        are wrong by a factor of 2 (one-way instead of two-way).
+        There are fewer ranges than unknowns; or the ranges do not intersect, are nearly horizontal,
+        or are wrong by a factor of about 2.
     """
     survey = survey if isinstance(survey, Survey) else read_ranges(Path(survey))
     sound = sound if isinstance(sound, Sound) else Sound.constant(sound)

@@ -82,7 +82,10 @@ class RangeModel:
         return np.stack(columns, axis=1) / (2.0 * step)
 
     def fitted(self) -> tuple[Floats, Booleans]:
-        """Fit the position; return the fitted unknowns, and a mask of the ranges in use."""
+        """Fit the position; return the fitted unknowns and a mask of the ranges in use.
+
+        All ranges are used if there are too few to test for outliers.
+        """
         count = len(self.ships)
         used = np.ones(count, dtype=bool)
         if count <= self.unknowns + SPARE:

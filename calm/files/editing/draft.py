@@ -353,8 +353,7 @@ class History:
         return tuple(label for label, _ in reversed(self._done))
 
     def do(self, draft: Draft, label: str) -> None:
-        """Make a draft the current one, unless it equals the current draft; `label` names the change.
-        """
+        """Make a draft the current one, unless the two are equal; `label` names the step."""
         if draft.text == self.draft.text:
             return
         self._done.append((label, self.draft.text))

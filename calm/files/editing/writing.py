@@ -150,7 +150,7 @@ class WritingStyle:
         Parameters
         ----------
         column : column of the dash, from 1
-        block : whether each key gets its own line even if no value contains a collection
+        block : whether each key gets its own line even in a short item
         """
         indent = " " * (column - 1)
         if isinstance(value, Mapping) and value and (block or _is_deep(value)):
