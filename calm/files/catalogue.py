@@ -182,7 +182,7 @@ class Catalogue:
     def same_thing(self, id: str) -> list[str]:
         """Return the ids of all definitions of the same product as `id`, the preferred id first.
 
-        Definitions of the same product name the same preferred id under `prefer`.
+        All definitions of a product give the same preferred id under `prefer`.
         """
         preferred = {each: entry.section.data.get("prefer") for each, entry in self._all().items()}
         first = preferred.get(id) or id
@@ -345,7 +345,7 @@ def read_level(paths: Iterable[Path], problems: list[Problem]) -> Level:
 def entries_of(definitions: SourceMapping, family: str | None) -> list[CatalogueEntry]:
     """Return the catalogue entries in a mapping from ids to definitions.
 
-    `family` is the catalogue family of the entries; None for `components:` in a mooring file.
+    `family` is the catalogue family; None for `components:` of a mooring file.
     """
     entries = []
     for id, fields in definitions.data.items():

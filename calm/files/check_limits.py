@@ -1,7 +1,4 @@
-"""Key `checks:` of a mooring file: limits of the design check, and accepted findings.
-
-Each limit has a default and the source of the default. Each accepted finding has a reason.
-"""
+"""Key `checks:` of a mooring file: limits of the design check, and accepted findings."""
 
 from __future__ import annotations
 
@@ -211,9 +208,9 @@ class LimitKey:
 
 
 def limit_keys(checks: definition.Model, prefix: str = "") -> Iterator[LimitKey]:
-    """Yield all limits of `checks:`; a limit that the file does not set has its default.
+    """Yield all limits of `checks:`, with the default of any limit that the file does not set.
 
-    `prefix` is prepended to the name of each key, such as ``safety_factor.`` for nested keys.
+    `prefix` precedes the name of each key, such as ``safety_factor.`` for nested keys.
     """
     for name, field in type(checks).model_fields.items():
         value, quantity = getattr(checks, name), definition.quantity_of(field)

@@ -228,18 +228,18 @@ def leg_numbers(file: MooringFile) -> list[int]:
 
 
 def refuse_several(file: MooringFile) -> None:
-    """Raise UsageError if a file has `legs`; used by functions that need a single line."""
+    """Raise UsageError if a file has `legs`."""
     if file.legs:
         raise UsageError(f"{file.path}: {ONE_LEG_ONLY}")
 
 
 def refuse_tow(file: MooringFile) -> None:
-    """Raise UsageError if a file is a tow; used by functions that need a mooring."""
+    """Raise UsageError if a file is a tow."""
     if file.tow is not None:
         raise UsageError(f"{file.path} is a tow; only a mooring can be used here")
 
 
 def refuse_all_but_moorings(file: MooringFile) -> None:
-    """Raise UsageError if a file is a tow or has `legs`; used by functions for a single line."""
+    """Raise UsageError if a file is a tow or has `legs`."""
     refuse_several(file)
     refuse_tow(file)

@@ -46,8 +46,8 @@ _WITH_UNIT = re.compile(
 _AFTER_AT = re.compile(r"(@\s*)(\d{1,3}(?:,\d{3})+|\d+(?:\.\d+)?)()(?![\w.,/])")
 _AT_THE_END = re.compile(r"^(.*)[_-](\d{4})$")
 _ROUND = 50
-"""Four-digit numbers in a label are depths only if they are multiples of this value [m]. Only one
-serial number in 50 is such a multiple.
+"""Four-digit numbers that do not begin with 0 are depths only if they are multiples of this value
+[m], which few serial numbers are.
 """
 _FOOT = 0.3048
 _LEAST_OF_A_FLOAT = 10.0

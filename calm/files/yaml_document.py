@@ -345,7 +345,7 @@ def _flow(value: object) -> str:
 
 
 def _form(model: type[BaseModel], loc: tuple[int | str, ...]) -> Any:
-    """Return the type at a location of pydantic, which may contain tags of unions."""
+    """Return the type that a model declares for a location, which may contain tags of unions."""
     form: Any = model
     for part in loc:
         models = _models_in(form)

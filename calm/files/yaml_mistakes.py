@@ -88,11 +88,7 @@ def _mistake(lines: list[str], error: MarkedYAMLError) -> Mistake | None:
 
 
 def _colon(lines: list[str], mark: Mark) -> Mistake | None:
-    """Explain a misplaced colon.
-
-    The colon may be the second in its line, in a line below a line without a colon, or in a line
-    that is indented too far.
-    """
+    """Explain a misplaced colon, such as a second colon in a line or a line indented too far."""
     line = lines[mark.line]
     if key := _KEY.match(line[: mark.column]):
         name, value = key[0].strip(), line[key.end() :].strip()

@@ -353,7 +353,7 @@ def located_mooring(path: Path) -> MooringFile:
     InputError
         The file has mistakes.
     UsageError
-        The file describes a tow, or a mooring with several legs.
+        The file describes a tow or several legs.
     """
     file = read_mooring(path)
     refuse_all_but_moorings(file)

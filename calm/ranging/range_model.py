@@ -120,7 +120,7 @@ class RangeModel:
         return min(found, key=lambda each: each[0])[1]
 
     def _start_positions(self) -> list[Floats]:
-        """Return positions below the middle of the survey, and towards its four sides."""
+        """Return starting positions: below the middle of the survey, and on its four sides."""
         middle = self.ships.mean(axis=0)
         _, _, axes = np.linalg.svd((self.ships - middle)[:, :2], full_matrices=True)
         reach = float(np.median(self.measured(np.array([0.0, 0.0, -1000.0])[: self.unknowns])))
@@ -131,7 +131,7 @@ class RangeModel:
         return starts
 
     def _below(self, x: Floats) -> Floats:
-        """Move a position that converged above the ship to its mirror image below."""
+        """Replace a position above the ship by its mirror image below the ship."""
         if self.depth is None:
             level = float(self.ships[:, 2].mean())
             x = np.array([x[0], x[1], min(x[2], 2.0 * level - x[2])])
@@ -251,7 +251,10 @@ class RangeModel:
 
 
 def scatter(residuals: Floats, unknowns: int) -> float:
-    """Estimate the standard deviation of residuals [m] from the median of their absolute values."""
+    """Estimate a standard deviation [m] from the median of absolute residuals (n,) [m].
+
+    The result is at least `FLOOR`.
+    """
     count = len(residuals)
     freedom = max(count - unknowns, 1)
     return max(1.4826 * float(np.median(residuals)) * sqrt(count / freedom), FLOOR)

@@ -291,10 +291,7 @@ def retyped(text: str, lines: Sequence[str]) -> str:
 
 
 def _taken_from(old: Sequence[str], new: Sequence[str]) -> list[int | None]:
-    """Return, for each new line, the index of the old line that it equals or replaces.
-
-    The index is None for an added line.
-    """
+    """Return the index of the old line that each new line equals or replaces; None if added."""
     # Comparing is slow, and usually only one line differs.
     head = _common_start(old, new)
     tail = _common_start(old[head:][::-1], new[head:][::-1])

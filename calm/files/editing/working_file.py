@@ -180,7 +180,7 @@ class WorkingFile:
     def adopt(self, kept: KeptWork) -> None:
         """Continue with recovered work, whose copy is deleted when the work is saved or discarded.
 
-        If the file has changed since the recovered work began, `changed_on_disk` returns True.
+        If the file has changed since the work began, `changed_on_disk` returns True.
         """
         self._adopted = kept.place
         if self.is_of_another(kept):
