@@ -73,7 +73,7 @@ def kept(attributes: Mapping[str, Any]) -> Attributes:
 def coverage(
     time: NDArray[np.datetime64], depth: NDArray[np.floating[Any]], place: Sequence[float]
 ) -> Attributes:
-    """Return the global attributes that describe the coverage in time, depth and position.
+    """Return the global attributes for the coverage in time, depth and position.
 
     Parameters
     ----------

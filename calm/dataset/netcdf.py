@@ -53,10 +53,7 @@ def netcdf_of(layout: ResultLayout, block: int = 0) -> bytes:
 def packed(layout: ResultLayout, block: int, arrays: Mapping[str, NDArray[Any]]) -> Chunks:
     """Compress the arrays of a block of times to HDF5 chunks, one per variable.
 
-    Parameters
-    ----------
-    block : number of times in a chunk
-    arrays : time-dependent variables, shape (n, …), where n <= `block`
+    `block` is the number of times in a chunk. The `arrays` have the shape (n, …), n <= `block`.
     """
     chunks = {}
     for variable in layout.in_blocks:
@@ -352,11 +349,9 @@ def source_date() -> datetime | None:
 def origin(path: str, name: str, description: str, command: str) -> Attributes:
     """Return global attributes about the origin of a result; unknown attributes are empty.
 
-    The only date used is `SOURCE_DATE_EPOCH`, so that the same input gives identical bytes.
+    The only date is `SOURCE_DATE_EPOCH`, so that the same input gives identical bytes.
 
-    Parameters
-    ----------
-    path, name, description : path, name and description of the mooring file
+    `path`, `name` and `description` are those of the mooring file.
     """
     made = f"calm {__version__} {command}"
     if date := source_date():

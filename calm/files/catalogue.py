@@ -211,13 +211,13 @@ def define(
     also_allowed: Iterable[str] = (),
     context: Mapping[str, object] | None = None,
 ) -> Defined | None:
-    """Validate a definition, with any overrides, and return the component that it defines.
+    """Validate a definition, with any overrides; return the component that it defines.
 
     Return None if the definition has mistakes, which are recorded in `section`.
 
     Parameters
     ----------
-    section : mapping to validate: the section of the entry, or overrides based on it
+    section : section of the entry, or overrides based on it
     also_allowed : keys that messages about an unknown key may suggest, besides those of the kind
     context : `IN_AIR` for a component used in air, otherwise None
     """
@@ -276,7 +276,7 @@ Level = Mapping[str, CatalogueEntry]
 class UnreadLevel(Level):
     """Entries of catalogue files; each entry is parsed when it is first used.
 
-    Ids are found by their unindented lines. In a quoted text, an unindented line that looks like an
+    Ids are recognised as unindented lines. In a quoted text, an unindented line that looks like an
     id is mistaken for a definition.
 
     Raises

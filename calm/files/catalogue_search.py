@@ -276,16 +276,9 @@ def _uses() -> Counter[str]:
 
 
 def _rank(each: Listed, words: Sequence[str], others: Sequence[str]) -> int:
-    """Return the rank of a match; the best rank is 0.
+    """Return the rank of a match: 0 for the exact id, more for a worse match.
 
-    The ranks, in this order, require:
-
-    - the exact id;
-    - the start or the end of the id;
-    - all words in an id that begins with the first word;
-    - all words in the id;
-    - all words without sizes, which are `others`, in the component's own texts;
-    - any other match, by a synonym or the source.
+    `others` are the words without sizes.
     """
     if not words:
         return 0

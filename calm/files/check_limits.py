@@ -33,7 +33,7 @@ class Limit:
 
     Attributes
     ----------
-    source : source of the default; `THE_DESIGN` for a limit without a default
+    source : source of the default; `THE_DESIGN` without a default
     default : default [SI, degrees], if the model gives none
     """
 
@@ -189,8 +189,8 @@ class LimitKey:
     dimension : dimension, as in `calm.units`
     value : limit in use [SI, degrees]; None if there is no limit
     default : default [SI, degrees]; None without a default
-    backed : False if an item of the line overrides the default without giving a source
-    share : whether the value is a fraction, displayed in percent
+    backed : False if an item of the line sets the limit without a source
+    share : whether the value is displayed in percent
     """
 
     name: str
@@ -282,10 +282,8 @@ class AcceptKeys(definition.Model):
 class Accept(AcceptKeys):
     """An item of `checks: accept:`, by which the designer accepts findings of a rule.
 
-    Attributes
-    ----------
-    labels : labels of the pieces and clamps concerned; None for all findings of the rule
-    line : line number in the mooring file
+    `labels` are the labels of the parts concerned; None for all parts. `line` is the line number
+    in the mooring file.
     """
 
     labels: tuple[str, ...] | None
@@ -336,8 +334,7 @@ def _accept(
 def matching(component: str, labels: Iterable[str]) -> list[str]:
     """Return the labels that equal a text or match a pattern; letter case matters.
 
-    A text that equals a label matches only that label. Otherwise, ``*`` stands for any characters,
-    ``?`` for one character, and ``[ab]`` for a or b.
+    A text that equals a label matches only that label. Patterns are those of `fnmatch`.
     """
     labels = list(labels)
     if component in labels:

@@ -343,12 +343,6 @@ def lacking(fields: Mapping[str, Any]) -> list[str]:
 def contradicted(kind: str, base: Set[str], override: Set[str]) -> frozenset[str]:
     """Return the keys of a definition that must be dropped because of an override.
 
-    Parameters
-    ----------
-    base, override : keys of the definition, and keys that override it
-
-    Notes
-    -----
     =============== ============================ =====================================
     kind            override gives               dropped from the definition
     =============== ============================ =====================================

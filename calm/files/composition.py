@@ -237,13 +237,13 @@ class Node(NamedTuple):
 
     Attributes
     ----------
-    start, end : the text of the node is ``text[start:end]``; empty for an empty value
+    start, end : span of the node in the text
     line, column : position of the start, from 1
     style : `block` or `flow` for a collection; first character of a quoted or block scalar; empty
         for a plain scalar
-    data : content, with scalars as text; do not change it, because nodes share it
+    data : content, with scalars as text; nodes share it, so it must not be changed
     keys : keys of a mapping, in the order of the file
-    children : the values of a mapping, or the items of a sequence
+    children : values of a mapping, or items of a sequence
     """
 
     kind: Kind

@@ -1,7 +1,7 @@
 """Keys that every component may have, and the conventions for their values.
 
-In the models, a quantity is an SI float (angles in degrees), or None if the file does not give it.
-Net forces refer to sea water of `CATALOGUE_DENSITY` and to standard gravity.
+In the models, quantities are in SI units and degrees. Net forces refer to sea water of
+`CATALOGUE_DENSITY` and to standard gravity.
 """
 
 from __future__ import annotations
@@ -126,9 +126,7 @@ def quantity_of(field: FieldInfo) -> QuantityField | None:
 
 
 def in_si(name: str, value: float | str, dimension: str) -> float:
-    """Convert a text with a unit to SI units, angles in degrees, temperatures in °C.
-
-    A number is returned unchanged.
+    """Convert a text with a unit to SI units (degrees, °C); a number is returned unchanged.
 
     Raises
     ------

@@ -100,12 +100,11 @@ class Environment:
     density : density of the fluid [kg/m³], or temperature and salinity
     gravity : gravitational acceleration [m/s²]; None if not given
     depth_range : water depth at low and at high water [m]
-    fouling : marine growth on the line
     maximum_speed : current speed above which the file is rejected [m/s]; infinite in a tow
     seabed : slope of the seabed; None for a level seabed
     waves : keys of `waves:` as given in the file
     seas : sea states that `waves` describes
-    doubts : warnings about values that are possible but probably wrong
+    doubts : warnings about values that are probably wrong
     """
 
     name: str | None
@@ -264,10 +263,10 @@ def read_environment(
     ----------
     name : name of the variant or environment file; None for the default environment
     notices : list to which remarks are added
-    towed : whether the environment is for a tow, which may be in air or have no water depth
+    towed : whether air, or an unknown water depth, is allowed
     position : position used to select a current profile and to place a seabed grid
-    open_files : False to check the section alone, without its files; with a current file, the
-        result is then None
+    open_files : whether to read other files; without them, an environment with a current file is
+        only checked, and None is returned
     """
     keys = validate(TowEnvironmentKeys if towed else EnvironmentKeys, section)
     if keys is None:

@@ -64,9 +64,9 @@ class Differences:
     Attributes
     ----------
     changed : changed values, those outside the line first
-    moved : parts moved within the line; the values are texts such as ``below wire 1``
-    removed, added : labels of removed and added pieces and clamps
-    pairs : matched pieces and clamps, in the order of the first line
+    moved : parts moved within the line, with texts such as ``below wire 1``
+    removed, added : labels of removed and added parts
+    pairs : matched parts, in the order of the first line
     """
 
     changed: tuple[Change, ...]
@@ -145,7 +145,7 @@ def _known_pieces(pieces: Sequence[Piece]) -> list[Known]:
 def _known_clamps(
     clamps: Sequence[tuple[int, Clamp]], partner: Mapping[int, int] | None
 ) -> list[Known]:
-    """Return the contents of clamps; matches on matching pieces are preferred.
+    """Return the contents of clamps, by which clamps on matched pieces match first.
 
     `partner` maps the pieces of the first line to their matches. For the clamps of the second line,
     `partner` is None.
@@ -297,7 +297,7 @@ class Alignment:
     ----------
     pairs : matched parts, in the order of the first line
     moved : matched pairs whose order has changed
-    removed, added : parts that are only in the first, or only in the second line
+    removed, added : parts that are in one line only
     """
 
     pairs: tuple[tuple[int, int], ...]

@@ -137,14 +137,12 @@ def read_equipment(item: SourceMapping) -> Equipment:
 
 
 def check_counted(item: SourceMapping, count: int, items: int | None) -> None:
-    """Check serial numbers and planned depths of an item and its clamps against a count.
+    """Check that serial numbers and planned depths of an item fit its number of pieces.
 
-    A list of serial numbers must match the count. A planned depth requires a single piece.
+    Clamps of the item are checked as well. Only a single piece may have a planned depth.
 
-    Parameters
-    ----------
-    count : number of pieces that the item produces
-    items : number of serial numbers per piece, such as 2 for a pair of releases; None if unknown
+    `items` is the number of serial numbers per piece, such as 2 for a pair of releases; None if
+    unknown.
     """
     clamps: Any = item.data.get("clamps")
     below = [(("clamps", i), one) for i, one in enumerate(clamps if _is_list(clamps) else ())]

@@ -162,7 +162,10 @@ class FileLeg:
 def stand_in_anchor(index: int, item: int) -> Piece:
     """Create a substitute anchor without height and of practically unlimited weight.
 
-    `index` is its index in the line, and `item` the index of its line item in the file.
+    Parameters
+    ----------
+    index : index of the anchor in the line
+    item : index of the line item of the anchor in the file
     """
     component = Anchor.model_validate({"kind": "anchor", "weight": "1e6 kN"})
     return Piece(index, STAND_IN, "anchor", component, 0.0, None, (), 0, 0, Place(item))

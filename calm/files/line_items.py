@@ -211,8 +211,7 @@ class LineReader:
     def _fit_depth(self, item: SourceMapping, *, fits: bool) -> float | None:
         """Return the depth [m] that determines the length of a piece that is cut to fit.
 
-        In a mooring, the depth is that of the top of the line. In a tow, the depth is that of the
-        lower end of the piece.
+        The depth is that of the top of a mooring, or of the lower end of the piece in a tow.
         """
         key, foreign, home = ("top_depth", "body_depth", "tows")
         if self._towed:

@@ -192,7 +192,9 @@ class Deployed(definition.Model):
 def check_deployed(
     deployed: Deployed, labels: Sequence[str], cables: Sequence[str], top: SourceMapping
 ) -> None:
-    """Check that deployed items are parts of the line, listed once, and lengths are of cables.
+    """Check the deployed items of a mooring file.
+
+    Each item must be a part of the line, listed once. Only cables and chains may have a length.
 
     Parameters
     ----------

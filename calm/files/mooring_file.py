@@ -92,7 +92,6 @@ class MooringFile:
     accepts : accepted findings of the design check
     looser : limits that an item of the line makes less strict than its component does
     document : title block
-    releases : acoustic releases with their codes
     units : display units by dimension
     """
 

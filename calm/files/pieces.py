@@ -108,10 +108,9 @@ class Piece:
     use, label : id of the component, and unique label of the piece
     component : definition of the component, including the overrides in the line
     length : unstretched length [m]; None for a piece that is cut to fit
-    fit_top_depth : depth of the top of the line in still water for which a piece is cut to fit [m]
-    line, column : position of the item in the text of the mooring file, from 1
-    fit_body_depth : depth of the lower end under tow for which a piece is cut to fit [m]
-    equipment : serial number and other keys of the individual piece
+    fit_top_depth : depth of the top of the line in still water, for a piece cut to fit [m]
+    line, column : position in the text of the mooring file, from 1
+    fit_body_depth : depth of the lower end under tow, for a piece cut to fit [m]
     measured_load : load under which the length in the file was measured [N]
     named : label in the file, or ""
     """

@@ -9,10 +9,10 @@ A label gives a depth if it contains exactly one number in one of these forms:
 
 The following numbers are not depths:
 
-- a serial number, such as any number after ``SN``, ``serial``, ``no.`` or ``#``;
-- the depth rating of the component, unless it follows ``@`` (``Aquadopp 6000 m``);
+- a serial number, such as any number after ``SN``, ``serial`` or ``#``;
+- the depth rating of the component, unless it follows ``@``;
 - four digits that do not begin with 0 after a model with digits (``SBE37_1700``);
-- any number in a label with words such as cable, wire, length, range, ``rated`` or ``above``;
+- any number in a label with words such as cable, length, range, ``rated`` or ``above``;
 - a range (``50-1000 m``), a product (``3x100 m``), ``1 200 m`` or ``1.2e2 m``;
 - a number below 10 m in the label of a float, which is a size.
 

@@ -345,8 +345,8 @@ def choose_environment(
 ) -> tuple[SourceMapping, str | None] | None:
     """Select an environment; return its unvalidated section and its name, or None.
 
-    The default environment supplies missing keys of a variant or an environment file. Mistakes in
-    the other environments of the mooring file are recorded, too.
+    The default environment supplies missing keys of another environment. Mistakes in all
+    environments of the mooring file are recorded.
 
     Parameters
     ----------

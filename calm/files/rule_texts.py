@@ -13,12 +13,12 @@ class RuleText:
     Attributes
     ----------
     quantity : name of the values in `calm.quantities`; "" for a rule without values
-    judges : description of the value that is checked
+    judges : description of the checked value
     limit : sentences on the limit, and on findings beyond it
     source : source of the rule and of its default limit
-    unseen : reason why the rule cannot check the profiles of a batch; "" if it can
-    figures : component keys whose values the rule needs
-    has_ratio : whether value divided by limit is meaningful, as for a demand and a capacity
+    unseen : reason why the rule cannot check batch profiles, or ""
+    figures : component keys that the rule needs
+    has_ratio : whether the ratio of value and limit is meaningful
     """
 
     title: str

@@ -30,7 +30,7 @@ class Document:
     ----------
     path : path as shown in messages
     data : mappings, lists, text and None
-    root : top-level node, which gives positions; None if the data have no text
+    root : top-level node; None if the data have no text
     """
 
     path: str
@@ -95,10 +95,10 @@ class SourceMapping:
 
     Attributes
     ----------
-    document, location : document and location of the mapping itself, not of its base
-    data : keys and values of the mapping and, for missing keys, of its base
+    document, location : origin of the mapping itself, not of its base
+    data : keys and values, including those of the base
     own : keys of the mapping itself
-    problems : list to which mistakes are added, common to all mappings of a file
+    problems : list of mistakes, common to all mappings of a file
     """
 
     document: Document

@@ -68,11 +68,10 @@ class Located:
     horizontal_95 : semi-major axis of the 95 % ellipse [m]
     ellipse : semi-major and semi-minor axis [m], and bearing of the major axis [degrees]
     depth_95 : half of the 95 % interval of the depth [m]; 0 if the depth was given
-    rms : square root of (sum of squared residuals / degrees of freedom) of the ranges in use [m]
+    rms : square root of (sum of squared residuals / degrees of freedom) [m]
     residuals : (n,) measured minus computed ranges [m]
-    used : (n,) mask of the ranges in use; False for rejected ranges
-    sound_speed : harmonic mean of the speed of sound along the ray [m/s]
-    warnings : warnings about geometry and consistency
+    used : (n,) mask of the ranges in use
+    sound_speed : harmonic mean along the ray [m/s]
     place : (3,) position east, north, up in the frame of the survey [m]
     second : another position that fits the ranges, or None
     undecided : whether the choice between the position and `second` is doubtful
@@ -138,8 +137,7 @@ def locate(
 
     Parameters
     ----------
-    survey : ranges, or the path of their file; a file is read with the transducer at the surface,
-        unless it gives a depth
+    survey : ranges, or the path of their file
     sound : speed of sound, as a profile or a constant [m/s]
     depth : depth of the transponder [m]; None to estimate the depth
     near : planned latitude and longitude [degrees], used to choose between two positions that fit
@@ -149,8 +147,8 @@ def locate(
     InputError
         The file of the ranges has mistakes.
     UsageError
-        There are fewer ranges than unknowns; or the ranges do not intersect, are nearly horizontal,
-        or are wrong by a factor of about 2.
+        There are too few ranges, or the ranges do not intersect, are nearly horizontal, or are
+        wrong by a factor of about 2.
     """
     survey = survey if isinstance(survey, Survey) else read_ranges(Path(survey))
     sound = sound if isinstance(sound, Sound) else Sound.constant(sound)

@@ -291,7 +291,7 @@ def geometry_warnings(
     ships : (n, 3) positions of the transducer [m]
     place : (3,) position of the transponder [m]
     below : depth of the transponder below the transducer [m]
-    depth_given : whether the depth of the transponder is known
+    depth_given : whether the depth was not estimated
     """
     away = (ships - place)[:, :2]
     distance = np.linalg.norm(away, axis=1)

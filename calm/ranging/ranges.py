@@ -1,10 +1,9 @@
 """Read acoustic ranges from a table of ship positions with `range[m]` or `time[s]`.
 
-The usual form is CSV with the columns `latitude[deg]`, `longitude[deg]` and `range[m]` or
-`time[s]`. Also accepted are degrees and minutes in two columns, column names of deck boxes and
-event logs, and two formats without column headings:
+The usual form is CSV with a header. Column names of deck boxes and event logs are accepted, as are
+degrees and minutes in two columns. Two formats have no column headings:
 
-- WHOI, five columns: degrees and minutes of latitude and of longitude, and one-way time in seconds.
+- WHOI, five columns: degrees and minutes of latitude and of longitude, and one-way time [s].
 - NOC, three columns: range, latitude and longitude. Above the ranges are three rows: the target
   (optional); water depth, height of the release and depth of the transducer; the drop position.
 """
@@ -47,7 +46,6 @@ class Survey:
     latitude, longitude : (n,) position of the transducer, WGS 84 [degrees]
     measured : (n,) ranges [m], or two-way times if `timed` [s]
     transducer : depth of the transducer [m]
-    notices : notes on excluded rows and columns
     """
 
     path: Path
@@ -68,9 +66,7 @@ class Survey:
 
 
 def read_ranges(path: Path, transducer: float = 0.0, hemisphere: str = "") -> Survey:
-    """Read the acoustic ranges in a file.
-
-    Rows without a range (blank or `nan`) and repeated rows are excluded.
+    """Read the acoustic ranges in a file, without blank and repeated rows.
 
     Parameters
     ----------

@@ -49,10 +49,6 @@ class Draft:
     Every edit returns a new draft. Layout and comments are kept, and new text follows the style of
     the file. A comment directly above an item belongs to the item.
 
-    Parameters
-    ----------
-    text : the text, with its line breaks and any byte-order mark
-
     Raises
     ------
     EditError

@@ -27,7 +27,7 @@ class LineLists:
 
     Attributes
     ----------
-    all : location and number of items of each list
+    all : location of each list, and its number of items
     """
 
     all: tuple[tuple[Location, int], ...]
@@ -64,8 +64,8 @@ class LineLists:
     def place(self, index: int, *, above: bool) -> tuple[Location, int]:
         """Convert a line index to the location of a list and an index in this list.
 
-        At an index between two legs, the result is the start of the lower leg if `above` is true,
-        and otherwise the end of the upper leg.
+        An index between two legs means the start of the lower leg if `above`, else the end of the
+        upper leg.
         """
         for rows, count in self.all[:-1]:
             if index < count or (index == count and not above):
@@ -98,9 +98,9 @@ class LineItem:
 
     Attributes
     ----------
-    line, column : position in the text, from 1, as in the pieces that the item produces
-    values : keys and plain values as written; an empty text for a key without a value, and a text
-        such as `480 m at 2 kN` for `length_at`
+    line, column : position in the text, from 1, which is also that of the resulting pieces
+    values : keys and plain values as written; empty text for a key without a value, and text such
+        as `480 m at 2 kN` for `length_at`
     text : lines of the item in the file, with its comments
     """
 
@@ -167,12 +167,12 @@ class Items:
     ----------
     start, end : span of the collection in the text
     is_flow : whether the collection is in brackets
-    column : column of the dashes of a list, or of the keys of a mapping, from 1
+    column : column of the dashes or keys, from 1
     texts : lines of each item with its comments; in brackets, the text between two commas
-    gaps : text before each item that belongs to no item, such as a less indented comment
+    gaps : text before each item that belongs to no item
     rest : text after the last item
     separator : text between two items in brackets
-    on_a_dash : whether the first entry of a mapping is on the line of a dash or of a `?`
+    on_a_dash : whether the first entry of a mapping follows a dash or a `?` on its line
     """
 
     start: int

@@ -1,7 +1,6 @@
 """The file that a user is editing, and backup copies of its unsaved text.
 
-A backup copy is named after the session. Its first line, a comment, contains the host, the process
-and a digest of the file when the work began.
+The first line of a backup copy is a comment with host, process and a digest of the original file.
 """
 
 from __future__ import annotations
@@ -36,12 +35,9 @@ class NotWritten(CalmError):
 class WorkingFile:
     """A mooring file that is being edited, and the backup copy of its unsaved text.
 
-    Parameters
-    ----------
-    path : path of the file; None if the file has no name yet
-
     Attributes
     ----------
+    path : path of the file; None if the file has no name yet
     unsaved : the text that `keep` saves; None if nothing is unsaved
     """
 
@@ -76,7 +72,7 @@ class WorkingFile:
     def save(self, text: str) -> str:
         """Write the file, so that other programs never see a partly written text.
 
-        The permissions of the file are kept. A symbolic link still points to the same file.
+        Permissions and symbolic links are kept.
 
         Returns
         -------

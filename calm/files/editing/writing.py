@@ -38,7 +38,7 @@ class Wording(NamedTuple):
 
     Attributes
     ----------
-    lines : lines of the item and its comments, in a block list that starts in column 1
+    lines : lines of the item and its comments in a block list, from column 1
     inline : text in flow style, without comments
     """
 
@@ -226,8 +226,8 @@ def written(text: str, *, flow: bool, quote: str = "") -> str:
 
     Parameters
     ----------
-    flow : whether the scalar is inside brackets, where a comma would end unquoted text
-    quote : current quotation mark, which is kept if possible; empty if there is none
+    flow : whether the scalar is inside brackets, where a comma ends unquoted text
+    quote : preferred quotation mark, or ""
     """
     if quote == "'" and text.isprintable():
         return "'" + text.replace("'", "''") + "'"
@@ -293,7 +293,7 @@ def own_end(text: str, place: int, column: int) -> int:
     ----------
     text : the text, which ends with a line break
     place : index at which the value of the item ends
-    column : column of the item, from 1; following comments to the right of the column are included
+    column : column of the item, from 1; comments to the right of it belong to the item
     """
     end = line_end(text, place)
     while (comment := _COMMENT.match(text, end)) and end < len(text):
