@@ -73,12 +73,12 @@ def kept(attributes: Mapping[str, Any]) -> Attributes:
 def coverage(
     time: NDArray[np.datetime64], depth: NDArray[np.floating[Any]], place: Sequence[float]
 ) -> Attributes:
-    """Return the global attributes that describe the coverage in time, depth and position.
+    """Return the global attributes for the coverage in time, depth and position.
 
     Parameters
     ----------
-    time : times of the result, ascending
-    depth : depths of the data [m], of any shape; NaN if unknown
+    time : times, ascending
+    depth : depths [m], of any shape; NaN if unknown
     place : latitude and longitude [degrees]; empty if unknown
     """
     first, last = (np.datetime_as_string(one, "s") + "Z" for one in (time[0], time[-1]))
@@ -152,9 +152,7 @@ def with_flags(
 
     Parameters
     ----------
-    variables : variables of the result
-    names : names of the flagged variables, each with the names of its other ancillary variables,
-        such as standard deviations
+    names : for each flagged variable, the names of its other ancillary variables
     cell_methods : CF attribute `cell_methods` of the flagged variables
     """
     found = []

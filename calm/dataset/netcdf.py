@@ -1,8 +1,4 @@
-"""Results as CF datasets: their dimensions, variables and NetCDF 4 files.
-
-The HDF5 library aborts the process if a write fails, for example on a full disk. For this reason
-the header is created in memory, and disk space is reserved before each block is written.
-"""
+"""Results as CF datasets: their dimensions, variables and NetCDF 4 files."""
 
 from __future__ import annotations
 
@@ -40,7 +36,7 @@ _ZEROS = bytes(1 << 20)
 def netcdf_of(layout: ResultLayout, block: int = 0) -> bytes:
     """Return the content of a new NetCDF file, in which time-dependent variables are empty.
 
-    These variables are divided into chunks of `block` times.
+    Time-dependent variables are divided into chunks of `block` times.
     """
     import h5netcdf
 
@@ -55,12 +51,9 @@ def netcdf_of(layout: ResultLayout, block: int = 0) -> bytes:
 
 
 def packed(layout: ResultLayout, block: int, arrays: Mapping[str, NDArray[Any]]) -> Chunks:
-    """Convert the arrays of a block to HDF5 chunks: one shuffled and deflated chunk per variable.
+    """Compress the arrays of a block of times to HDF5 chunks, one per variable.
 
-    Parameters
-    ----------
-    block : number of times in a chunk
-    arrays : values of each time-dependent variable, shape (n, …); the last block may be shorter
+    `block` is the number of times in a chunk. The `arrays` have the shape (n, …), n <= `block`.
     """
     chunks = {}
     for variable in layout.in_blocks:
@@ -80,20 +73,19 @@ def write_netcdf(
     path: Path,
     last: Callable[[], Attributes] = dict,
 ) -> None:
-    """Write a NetCDF file block by block. An incomplete file has a temporary name.
+    """Write a NetCDF file in blocks of times.
 
     Parameters
     ----------
     block : number of times in a block
-    blocks : results of `packed`, in order; only one block is in memory at a time
-    last : function that returns the attributes known only after the last block. In the layout,
-        these attributes are placeholders: numbers, or texts of the same length
+    blocks : results of `packed`, in order
+    last : returns the attributes known only after the last block; in the layout, they are
+        placeholders: numbers, or texts of the same length
 
     Raises
     ------
     UsageError
-        The file cannot be written, for example because the disk is full; an older file is not
-        overwritten.
+        The file cannot be written, for example because the disk is full; an older file is kept.
     """
     import h5py
 
@@ -107,6 +99,7 @@ def write_netcdf(
             with part.open("r+b") as stream:
                 stream.write(image)
                 stream.flush()
+                # HDF5 aborts the process if a write fails, so the space is reserved first
                 _take_room(stream.fileno(), room)
                 with h5py.File(part, "r+") as file:
                     for number, chunks in enumerate(blocks):
@@ -136,13 +129,7 @@ def _take_room(handle: int, size: int) -> None:
 def chunk_shape(layout: ResultLayout, variable: Variable, block: int) -> tuple[int, ...]:
     """Return the chunk shape of a time-dependent variable.
 
-    An incomplete last chunk has this shape, too.
-
-    Parameters
-    ----------
-    layout : layout of the result
-    variable : a variable of the layout
-    block : largest number of profiles in a chunk
+    `block` is the largest number of times in a chunk. An incomplete last chunk has the same shape.
     """
     length = min(block, layout.sizes[variable.dimensions[0]])
     return length, *(layout.sizes[name] for name in variable.dimensions[1:])
@@ -206,12 +193,10 @@ def of_net(
 ) -> list[Variable]:
     """Adapt the variables of a single line to a net.
 
-    The descriptions of offsets refer to the origin. Variables with the leg names, and with the leg
-    index of each part, are added.
+    Offsets are described relative to the origin. Leg names and leg indices are added.
 
     Parameters
     ----------
-    variables : variables as for a single line
     names : names of the legs
     components, clamps, nodes : index of the leg of each component, clamp and node
     """
@@ -234,7 +219,7 @@ def of_net(
 
 @dataclass(frozen=True)
 class Variable:
-    """NetCDF variable. A time-dependent variable is written in blocks, so its `values` are None."""
+    """NetCDF variable; `values` is None for a time-dependent variable."""
 
     name: str
     dimensions: tuple[str, ...]
@@ -262,7 +247,6 @@ class ResultLayout:
     Attributes
     ----------
     sizes : sizes of the dimensions
-    variables : variables in the order of the result
     attributes : global attributes
     """
 
@@ -284,12 +268,10 @@ def numbers(
 ) -> list[Variable]:
     """Create numeric variables with their coordinates.
 
-    A variable that is itself a coordinate is not listed among its own coordinates.
-
     Parameters
     ----------
-    coordinates : names of the coordinates of the variables
-    values : values by name; None for time-dependent variables, which have no values yet
+    coordinates : names of the coordinates, separated by blanks
+    values : values by name; None for time-dependent variables
     """
     variables = []
     for name, (unit, meaning, more) in quantities.items():
@@ -307,11 +289,7 @@ def numbers(
 def labels(name: str, dimension: str, texts: Iterable[str], meaning: str) -> Variable:
     """Create a variable of labels along a dimension.
 
-    Parameters
-    ----------
-    name, dimension : name and dimension of the variable
-    texts : the labels
-    meaning : description of the labels, for the attribute `long_name`
+    `meaning` is the description of the labels, for the attribute `long_name`.
     """
     values = np.array(list(texts), dtype=np.str_)
     return Variable(name, (dimension,), values.dtype.str, {"long_name": meaning}, values)
@@ -320,9 +298,9 @@ def labels(name: str, dimension: str, texts: Iterable[str], meaning: str) -> Var
 def down_the_line(sizes: Mapping[str, int]) -> list[Variable]:
     """Create the coordinates that number parts, nodes and sensors from the top down.
 
-    They are dimensionless vertical coordinates in the sense of CF. Depths are not suitable as
-    coordinates because they vary in time, and adjacent parts may have equal depths.
+    In the sense of CF, these numbers are dimensionless vertical coordinates.
     """
+    # depths vary in time, and adjacent parts may have equal depths
     return [
         Variable(
             name, (name,), "<i4",
@@ -336,14 +314,12 @@ def down_the_line(sizes: Mapping[str, int]) -> list[Variable]:
 
 
 def station(name: str, place: Sequence[float], of_what: str) -> tuple[list[Variable], str]:
-    """Create the CF station variables of a mooring.
-
-    Also return the names to append to the attribute `coordinates` of other variables.
+    """Create the CF station variables of a mooring, and text to append to `coordinates`.
 
     Parameters
     ----------
-    place : latitude and longitude [degrees north, degrees east]; without them the dataset has no
-        discrete sampling geometry in the sense of CF
+    place : latitude and longitude [degrees north, degrees east]; if empty, the dataset is no CF
+        discrete sampling geometry
     of_what : object at this position, for the attribute `long_name`
     """
     label = np.array(name, dtype=np.str_)
@@ -373,12 +349,9 @@ def source_date() -> datetime | None:
 def origin(path: str, name: str, description: str, command: str) -> Attributes:
     """Return global attributes about the origin of a result; unknown attributes are empty.
 
-    The only date used is `SOURCE_DATE_EPOCH`, so that the same input gives identical bytes.
+    The only date is `SOURCE_DATE_EPOCH`, so that the same input gives identical bytes.
 
-    Parameters
-    ----------
-    path, name, description : path, name and description of the mooring file
-    command : CALM command that computed the result
+    `path`, `name` and `description` are those of the mooring file.
     """
     made = f"calm {__version__} {command}"
     if date := source_date():

@@ -1,7 +1,6 @@
 """Component catalogue from several levels: shipped, user's own, given files, and the mooring file.
 
-Definitions are kept as text and validated on first use, so that unused components take no time.
-The user's files are read again only if they have changed.
+Definitions are kept as text and validated on first use.
 """
 
 from __future__ import annotations
@@ -65,13 +64,13 @@ class Catalogue:
     def load(cls, files: Sequence[str | Path] = ()) -> Catalogue:
         """Load the catalogue.
 
-        The given `files` take precedence over the files in the user's catalogue folder, which take
-        precedence over the shipped files.
+        The last of the `files` has the highest precedence. All `files` precede the user's catalogue
+        folder, which precedes the shipped files.
 
         Raises
         ------
         InputError
-            A given file, or a file in the user's catalogue folder, cannot be read or has mistakes.
+            A file cannot be read or has mistakes.
         """
         folder = user_folder()
         own = sorted(folder.glob("*.yaml")) if folder.is_dir() else []
@@ -183,7 +182,7 @@ class Catalogue:
     def same_thing(self, id: str) -> list[str]:
         """Return the ids of all definitions of the same product as `id`, the preferred id first.
 
-        Definitions of the same product name the same preferred id under `prefer`.
+        All definitions of a product give the same preferred id under `prefer`.
         """
         preferred = {each: entry.section.data.get("prefer") for each, entry in self._all().items()}
         first = preferred.get(id) or id
@@ -197,8 +196,7 @@ def _shipped_files() -> list[Path]:
 def user_folder() -> Path:
     """Return the folder of the user's catalogue.
 
-    The folder is `CALM_CATALOG_DIR` if that environment variable is set; otherwise it is
-    `calm/catalog` in the user's configuration folder.
+    The folder is `CALM_CATALOG_DIR`, or `calm/catalog` in the user's configuration folder.
     """
     if folder := os.environ.get("CALM_CATALOG_DIR"):
         return Path(folder)
@@ -213,15 +211,14 @@ def define(
     also_allowed: Iterable[str] = (),
     context: Mapping[str, object] | None = None,
 ) -> Defined | None:
-    """Validate a definition, with any overrides, and return the component that it defines.
+    """Validate a definition, with any overrides; return the component that it defines.
 
-    Return None if the definition has mistakes. The mistakes are recorded in `section`.
+    Return None if the definition has mistakes, which are recorded in `section`.
 
     Parameters
     ----------
-    entry : catalogue entry of the definition
-    section : mapping to validate: the section of the entry, or overrides based on that section
-    also_allowed : keys that may be in the section although they do not belong to the component
+    section : section of the entry, or overrides based on it
+    also_allowed : keys that messages about an unknown key may suggest, besides those of the kind
     context : `IN_AIR` for a component used in air, otherwise None
     """
     kind = section.data.get("kind")
@@ -279,13 +276,8 @@ Level = Mapping[str, CatalogueEntry]
 class UnreadLevel(Level):
     """Entries of catalogue files; each entry is parsed when it is first used.
 
-    At first, the files are only searched for ids, which are in unindented lines. All files are
-    parsed completely if an unindented line is not an id, or if an entry has a mistake. In a quoted
-    text, an unindented line that looks like an id is mistaken for a definition.
-
-    Parameters
-    ----------
-    paths : paths of the files
+    Ids are recognised as unindented lines. In a quoted text, an unindented line that looks like an
+    id is mistaken for a definition.
 
     Raises
     ------
@@ -353,7 +345,7 @@ def read_level(paths: Iterable[Path], problems: list[Problem]) -> Level:
 def entries_of(definitions: SourceMapping, family: str | None) -> list[CatalogueEntry]:
     """Return the catalogue entries in a mapping from ids to definitions.
 
-    `family` is the catalogue family of the entries; None for `components:` in a mooring file.
+    `family` is the catalogue family; None for `components:` of a mooring file.
     """
     entries = []
     for id, fields in definitions.data.items():
@@ -373,7 +365,7 @@ def _entries_of(document: Document, problems: list[Problem]) -> list[CatalogueEn
 def _cuts(path: Path) -> Iterator[tuple[str | None, str]]:
     """Yield id and text of each definition; the id is None if it cannot be recognised.
 
-    Empty lines precede the text, so that the line numbers agree with those of the file.
+    Empty lines before the text keep the line numbers of the file.
     """
     text = read_text(path)
     heads, above, end = list(_HEAD.finditer(text)), 0, 0
@@ -389,7 +381,7 @@ _LOADED: FileCache[Catalogue] = FileCache()
 def defined(id: str, values: Mapping[str, Any]) -> tuple[Component | None, tuple[Problem, ...]]:
     """Build a component from its values; return the component and any mistakes in the values.
 
-    The component is None if there are mistakes, or if the values define an assembly or outline.
+    The component is None if there are mistakes, or for an assembly or outline.
     """
     problems: list[Problem] = []
     section = SourceMapping.of(Document(id, {id: dict(values)}), problems).child(id)

@@ -89,7 +89,7 @@ class Listed:
 class WordIndex:
     """Index for searching components by words; the user's own components come first.
 
-    The index contains no values of components, so a search with a limit finds nothing.
+    The index contains no component values, so a search with a limit finds nothing.
     """
 
     def __init__(self, catalogue: Catalogue) -> None:
@@ -123,10 +123,8 @@ class WordIndex:
     def suggested(self, text: str, near: str | None) -> list[str]:
         """Return up to three suggested ids for a text that is not an id.
 
-        `near` is the id with the most similar spelling. It is the only suggestion if the text
-        contains a digit (digits usually give a size), or if no component contains every word of the
-        text. Otherwise, the suggestions are the components that contain every word. The components
-        used most often in the shipped lines come first.
+        `near` is the id with the most similar spelling. It is the only suggestion for a text with a
+        digit, which usually belongs to a size, or if no component contains every word.
         """
         if near and any(map(str.isdigit, text)):
             return [near]
@@ -144,21 +142,16 @@ class WordIndex:
     ) -> list[Listed]:
         """Find the components that contain all words and meet all limits of a text.
 
-        A limit is a word such as ``breaking>50kN``. Hyphens separate words as blanks do, because
-        spellings vary. A size such as ``8mm`` or ``17 in`` also matches an equal size in another
-        unit.
-
-        Components that contain the words themselves precede components that match through a synonym
-        or their source. Within these two groups, complete components precede outlines. Among
-        equally good matches, the components used most often in the shipped lines come first.
+        A limit is a word such as ``breaking>50kN``. A size such as ``8mm`` also matches an equal
+        size in another unit.
 
         Parameters
         ----------
-        text : words and limits
+        text : words and limits, separated by blanks
         kinds : kinds of components to search; by default all
         first : ids to list first, in this order; only exact matches precede them
-        by : key of the column that sorts the result, largest magnitude first and unknown values
-            last; by default the best matches come first
+        by : key of the column that sorts the result, largest magnitude first; by default the best
+            matches come first
         """
         plain, limits = _parsed(text)
         terms = _terms(plain)
@@ -176,8 +169,7 @@ class WordIndex:
 
         Returns
         -------
-        found : components with the largest number of matching words, in the order of `search`;
-            empty if no component contains any of the words
+        found : components with the most matching words; empty if no word matches
         unknown : words that no component contains
         """
         plain, limits = _parsed(text)
@@ -200,9 +192,9 @@ class WordIndex:
     def _ranked(
         self, hits: Iterable[Listed], terms: Sequence[Term], first: Sequence[str]
     ) -> list[Listed]:
-        """Sort components: exact ids first, then ids in `first` in their order, then by `_rank`.
+        """Sort components: exact ids, then ids in `first`, then by `_rank`.
 
-        Components that match only through a synonym or their source do not move up by `first`.
+        A match by a synonym or the source does not move up by `first`.
         """
         places = {id: number for number, id in enumerate(first)}
 
@@ -284,11 +276,9 @@ def _uses() -> Counter[str]:
 
 
 def _rank(each: Listed, words: Sequence[str], others: Sequence[str]) -> int:
-    """Return the rank of a match; a smaller rank is a better match.
+    """Return the rank of a match: 0 for the exact id, more for a worse match.
 
-    The matches, in order of rank, are: the exact id; the start or end of the id; all words in the
-    id, which begins with the first word; all words in the id; all words in the other own texts; a
-    match by a synonym or the source. `others` are the words without sizes.
+    `others` are the words without sizes.
     """
     if not words:
         return 0

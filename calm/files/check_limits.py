@@ -1,7 +1,4 @@
-"""Key `checks:` of a mooring file: limits of the design check, and accepted findings.
-
-Each limit has a default and the source of the default. Each accepted finding has a reason.
-"""
+"""Key `checks:` of a mooring file: limits of the design check, and accepted findings."""
 
 from __future__ import annotations
 
@@ -32,12 +29,12 @@ THE_DESIGN = "the design"
 
 @dataclass(frozen=True)
 class Limit:
-    """Annotation that gives a key of `checks:` its default and the source of the default.
+    """Annotation of a key of `checks:` with its default and the source of the default.
 
     Attributes
     ----------
-    source : source of the default; `THE_DESIGN` for a limit without a default
-    default : default [SI, degrees] to use if the value in the model is None
+    source : source of the default; `THE_DESIGN` without a default
+    default : default [SI, degrees], if the model gives none
     """
 
     source: str = THIS_PROGRAM
@@ -192,9 +189,8 @@ class LimitKey:
     dimension : dimension, as in `calm.units`
     value : limit in use [SI, degrees]; None if there is no limit
     default : default [SI, degrees]; None without a default
-    source : source of the default
-    backed : False if an item of the line overrides the default without giving a source
-    share : whether the value is a fraction, which is displayed in percent
+    backed : False if an item of the line sets the limit without a source
+    share : whether the value is displayed in percent
     """
 
     name: str
@@ -212,9 +208,9 @@ class LimitKey:
 
 
 def limit_keys(checks: definition.Model, prefix: str = "") -> Iterator[LimitKey]:
-    """Yield all limits of `checks:`; a limit that the file does not set has its default.
+    """Yield all limits of `checks:`, with the default of any limit that the file does not set.
 
-    `prefix` is prepended to the name of each key, such as ``safety_factor.`` for nested keys.
+    `prefix` precedes the name of each key, such as ``safety_factor.`` for nested keys.
     """
     for name, field in type(checks).model_fields.items():
         value, quantity = getattr(checks, name), definition.quantity_of(field)
@@ -286,8 +282,8 @@ class AcceptKeys(definition.Model):
 class Accept(AcceptKeys):
     """An item of `checks: accept:`, by which the designer accepts findings of a rule.
 
-    `labels` are the labels of the pieces and clamps to which the item applies; None means all
-    findings of the rule. `line` is the line number of the item in the mooring file.
+    `labels` are the labels of the parts concerned; None for all parts. `line` is the line number
+    in the mooring file.
     """
 
     labels: tuple[str, ...] | None
@@ -308,11 +304,7 @@ def read_accepts(
 ) -> tuple[Accept, ...]:
     """Read the accepted findings in a mooring file, sorted from most to least specific.
 
-    Parameters
-    ----------
-    keys : items of `checks: accept:`
-    labels : labels of the pieces and clamps in the line; None if the line has mistakes
-    top : top level of the mooring file
+    `labels` are the labels of the pieces and clamps in the line; None if the line has mistakes.
     """
     found = [_accept(one, number, labels, top) for number, one in enumerate(keys)]
     known = labels or ()
@@ -340,11 +332,9 @@ def _accept(
 
 
 def matching(component: str, labels: Iterable[str]) -> list[str]:
-    """Return the labels that match `component`, which is a label or a pattern.
+    """Return the labels that equal a text or match a pattern; letter case matters.
 
-    A text that equals a label matches only that label. In a pattern, ``*`` matches any
-    characters, ``?`` matches one character, and ``[ab]`` matches a or b. Matching is
-    case-sensitive.
+    A text that equals a label matches only that label. Patterns are those of `fnmatch`.
     """
     labels = list(labels)
     if component in labels:

@@ -1,8 +1,5 @@
 """The kinds of components that a catalogue, or `components:` of a mooring file, can define.
 
-Some values are alternatives: the drag of a body is given as `kn`, or as `drag_area` and `cd`; a net
-force is given, or is computed from mass and volume. If an override gives one alternative, the other
-alternatives are removed from the definition; values that do not contradict the override are kept.
 Lengths, masses and forces of cables and chains are per metre.
 """
 
@@ -346,27 +343,20 @@ def lacking(fields: Mapping[str, Any]) -> list[str]:
 def contradicted(kind: str, base: Set[str], override: Set[str]) -> frozenset[str]:
     """Return the keys of a definition that must be dropped because of an override.
 
-    Parameters
-    ----------
-    kind : kind of the component
-    base, override : keys of the definition, and keys that override it
-
-    Notes
-    -----
-    ================ =========================== ==============================================
-    kind             override gives              dropped from the definition
-    ================ =========================== ==============================================
-    body, profiler   a drag in another form      its drag keys, and the `kt` given with them
-    rigid            `buoyancy`                  `volume`
-    rigid            `mass` or `volume`, if both `buoyancy`, which then follows from them
-                     are known
-    cable            `weight` or `buoyancy`      the other of the two
-    cable            `density`, or `mass` if a   `weight`, `buoyancy`, which then follow
-                     density is known
-    cable            `stiffness`                 `elongation`, `permanent_elongation`
-    cable            `elongation`                `stiffness`
-    chain, anchor    `mass` or `density`         `weight`, which then follows
-    ================ =========================== ==============================================
+    =============== ============================ =====================================
+    kind            override gives               dropped from the definition
+    =============== ============================ =====================================
+    body, profiler  a drag in another form       all drag keys
+    rigid           `buoyancy`                   `volume`
+    rigid           `mass` or `volume`,          `buoyancy`
+                    if both are known
+    cable           `weight` or `buoyancy`       the other of the two
+    cable           `mass` or `density`,         `weight`, `buoyancy`
+                    if both are known
+    cable           `stiffness`                  `elongation`, `permanent_elongation`
+    cable           `elongation`                 `stiffness`
+    chain, anchor   `mass` or `density`          `weight`
+    =============== ============================ =====================================
     """
     known = base | override
     void: set[str] = set()

@@ -1,9 +1,4 @@
-"""Parse YAML text to a tree of nodes with their positions, from the events of PyYAML.
-
-libyaml, if PyYAML includes it, is about thirty times as fast as the parser in Python. Both must
-give the same result. Text that they parse differently, and text that libyaml rejects, is therefore
-parsed in Python.
-"""
+"""Parse YAML text to a tree of nodes with their positions, from the events of PyYAML."""
 
 from __future__ import annotations
 
@@ -80,6 +75,7 @@ def compose(text: str) -> Composition:
     start = int(text.startswith("\ufeff"))
     plain = text[start:] if text.isascii() else text[start:].translate(_NO_BREAKS)
     try:
+        # libyaml is about thirty times as fast, but must give the same result
         if yaml.__with_libyaml__ and not _is_read_differently(plain):
             try:
                 return _Reader(text, start, yaml.CSafeLoader(plain).get_event).read()
@@ -108,11 +104,7 @@ def _composed_by_python(text: str, start: int, plain: str) -> Composition:
 class _Reader:
     """Converter of YAML events to nodes, with a list of the rejected parts.
 
-    Parameters
-    ----------
-    text : the whole text
-    start : index in the text at which the parsed part begins
-    next_event : returns the next event
+    `start` is the index in the text at which the parsed part begins.
     """
 
     def __init__(self, text: str, start: int, next_event: Callable[[], events.Event]) -> None:
@@ -245,15 +237,13 @@ class Node(NamedTuple):
 
     Attributes
     ----------
-    kind : "mapping", "sequence" or "scalar"
-    start, end : the text of the node is ``text[start:end]``; an empty value starts and ends after
-        its colon or dash
-    line, column : line and column where the node starts, counted from 1
+    start, end : span of the node in the text
+    line, column : position of the start, from 1
     style : `block` or `flow` for a collection; first character of a quoted or block scalar; empty
         for a plain scalar
-    data : content, with scalars as text; it is shared between nodes and must not be changed
+    data : content, with scalars as text; nodes share it, so it must not be changed
     keys : keys of a mapping, in the order of the file
-    children : the values of a mapping, or the items of a sequence
+    children : values of a mapping, or items of a sequence
     """
 
     kind: Kind
@@ -271,8 +261,7 @@ class Node(NamedTuple):
 
         Returns
         -------
-        (key node, value node) in a mapping, (None, item) in a list, and (None, None) if there is no
-        such key or index.
+        (key node, value node) in a mapping, (None, item) in a list; (None, None) if not found.
         """
         if self.kind == "mapping":
             named = zip(self.keys, self.children, strict=True)

@@ -1,8 +1,7 @@
 """Keys that every component may have, and the conventions for their values.
 
-In a file, a quantity is text with a unit. In the models, a quantity is an SI float (angles in
-degrees), or None if the file does not give it. Net forces refer to sea water of `CATALOGUE_DENSITY`
-and to standard gravity.
+In the models, quantities are in SI units and degrees. Net forces refer to sea water of
+`CATALOGUE_DENSITY` and to standard gravity.
 """
 
 from __future__ import annotations
@@ -127,14 +126,12 @@ def quantity_of(field: FieldInfo) -> QuantityField | None:
 
 
 def in_si(name: str, value: float | str, dimension: str) -> float:
-    """Convert an argument to SI units; angles are in degrees, temperatures in °C.
-
-    A text must include a unit; a number is returned unchanged.
+    """Convert a text with a unit to SI units (degrees, °C); a number is returned unchanged.
 
     Raises
     ------
     UsageError
-        The text is not a quantity of this dimension; the message names the argument.
+        The text is not a quantity of this dimension; the message contains `name`.
     """
     if not isinstance(value, str):
         return value
@@ -289,9 +286,11 @@ class FatigueKeys(Model):
 class Definition(Model):
     """Keys common to all kinds of components.
 
-    `source` applies to every value for which `sources` names no other source. `searched` lists
-    the keys for which a search found no published value. `prefer` is the id of another definition
-    of the same product, which should be used instead of this definition.
+    Attributes
+    ----------
+    source : source of the values that `sources` does not list
+    searched : keys for which a search found no published value
+    prefer : id of a better definition of the same product
     """
 
     role: Role = "instrument"
@@ -380,9 +379,9 @@ def is_in_air(info: ValidationInfo) -> bool:
 
 
 def volume_from_weights(mass: float | None, net_buoyancy: float) -> float | None:
-    """Compute the displaced volume [m³] from mass [kg] and net buoyancy [N].
+    """Compute the displaced volume [m³] from mass [kg] and net buoyancy [N], or None.
 
-    If the values are per metre, the volume is also per metre. Return None if the mass is unknown.
+    The volume is per metre if the arguments are.
     """
     if mass is None:
         return None

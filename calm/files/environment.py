@@ -51,10 +51,7 @@ class SeabedKeys(Model):
     )
 
     def at(self, east: float, north: float) -> SeabedKeys:
-        """Return the seabed relative to a new reference point; a plane remains the same.
-
-        The new reference point is given in m east and north of the current reference point.
-        """
+        """Return the plane seabed unchanged; its slope is the same at all reference points."""
         return self
 
     @property
@@ -66,7 +63,7 @@ class SeabedKeys(Model):
     def deeper(self, places: Floats) -> Floats:
         """Return the increase in water depth from the reference point to other positions (n,) [m].
 
-        `places` (n, 2) are these positions east and north of the reference point [m].
+        `places` (n, 2) are the other positions east and north of the reference point [m].
         """
         deeper: Floats = places @ np.array(self.plane)
         return deeper
@@ -99,20 +96,15 @@ class Environment:
     ----------
     name : name of the variant or environment file in use; None for the default environment
     fluid : "water"; "air" is possible in a tow only
-    depth : water depth [m]; None in a tow without a water depth
-    density : density of the fluid [kg/m³], or temperature and salinity from which it is computed
+    depth : water depth [m]; None if unknown, in a tow only
+    density : density of the fluid [kg/m³], or temperature and salinity
     gravity : gravitational acceleration [m/s²]; None if not given
-    current : current speeds and directions by depth
-    wind : wind over the water
-    position : position of the mooring; None if not given
     depth_range : water depth at low and at high water [m]
-    fouling : marine growth on the line
-    maximum_speed : current speed above which a mistake is reported [m/s]; infinite in a tow and in
-        air
+    maximum_speed : current speed above which the file is rejected [m/s]; infinite in a tow
     seabed : slope of the seabed; None for a level seabed
-    waves : keys of `waves:` as given in the file; None if not given
+    waves : keys of `waves:` as given in the file
     seas : sea states that `waves` describes
-    doubts : warnings about values that are possible but probably wrong
+    doubts : warnings about values that are probably wrong
     """
 
     name: str | None
@@ -269,12 +261,12 @@ def read_environment(
 
     Parameters
     ----------
-    section : the environment
     name : name of the variant or environment file; None for the default environment
     notices : list to which remarks are added
-    towed : whether the environment is for a tow, which may be in air or have no water depth
-    position : position that selects the profile in a current file with several profiles
-    open_files : whether current files are read; if False, an environment with a file gives None
+    towed : whether air, or an unknown water depth, is allowed
+    position : position used to select a current profile and to place a seabed grid
+    open_files : whether to read other files; without them, an environment with a current file is
+        only checked, and None is returned
     """
     keys = validate(TowEnvironmentKeys if towed else EnvironmentKeys, section)
     if keys is None:

@@ -1,8 +1,7 @@
 """Compare the pieces and the other values of two mooring files.
 
-Parts of the two lines are matched by label, otherwise by content and order. A label is used only if
-it is unique in each line. Labels with a number added by `numbered` are not used, because a shackle
-inserted at the top changes all numbers below it.
+Parts of the two lines are matched by unique label, otherwise by content and order. Labels with a
+number added by `numbered` are not used for matching.
 """
 
 from __future__ import annotations
@@ -34,8 +33,7 @@ Value = float | str | None
 class ComparedValue:
     """A number [SI, degrees] or text in a file, with its display text.
 
-    `table` is the table that the display text summarises. Tables are compared as well, because
-    different tables may have the same text.
+    `table` is the whole table if the display text only summarises it.
     """
 
     value: Value
@@ -61,16 +59,14 @@ class Change:
 
 @dataclass(frozen=True)
 class Differences:
-    """The differences between two files.
+    """The differences between two mooring files.
 
     Attributes
     ----------
-    changed : changed values: first values outside the line, then values in the line from the top
-        down
-    moved : parts that have moved within the line; the values of each `Change` are texts, such as
-        ``below wire 1``
-    removed, added : labels of removed and added pieces and clamps
-    pairs : matched pieces and clamps, in the order of the first line
+    changed : changed values, those outside the line first
+    moved : parts moved within the line, with texts such as ``below wire 1``
+    removed, added : labels of removed and added parts
+    pairs : matched parts, in the order of the first line
     """
 
     changed: tuple[Change, ...]
@@ -149,10 +145,10 @@ def _known_pieces(pieces: Sequence[Piece]) -> list[Known]:
 def _known_clamps(
     clamps: Sequence[tuple[int, Clamp]], partner: Mapping[int, int] | None
 ) -> list[Known]:
-    """Return the contents of clamps, which match only if their pieces match.
+    """Return the contents of clamps, by which clamps on matched pieces match first.
 
-    `partner` maps the pieces of the first line to their matches in the second line. For the clamps
-    of the second line, `partner` is None.
+    `partner` maps the pieces of the first line to their matches. For the clamps of the second line,
+    `partner` is None.
     """
     labels = own_labels([clamp.label for _, clamp in clamps])
     known = []
@@ -286,8 +282,7 @@ _NUMBERED = re.compile(r"(.+) ([1-9]\d*)")
 class Known:
     """A part to be matched: its label without an added number, and its content.
 
-    `contents` are the keys by which parts are compared, from the strictest to the least strict.
-    Parts with equal keys match.
+    Parts match if a key in `contents` is equal; the strictest key comes first.
     """
 
     label: str
@@ -296,13 +291,13 @@ class Known:
 
 @dataclass(frozen=True)
 class Alignment:
-    """Result of matching the parts of two lines; parts are given by index.
+    """Matched, moved, removed and added parts of two lines, given by index.
 
     Attributes
     ----------
-    pairs : indices of matched parts, in the order of the first line
+    pairs : matched parts, in the order of the first line
     moved : matched pairs whose order has changed
-    removed, added : indices of parts that are only in the first line, or only in the second line
+    removed, added : parts that are in one line only
     """
 
     pairs: tuple[tuple[int, int], ...]
@@ -366,10 +361,10 @@ def _pair_between(
     key: int,
     pairs: dict[int, int],
 ) -> None:
-    """Match the parts with equal keys, in order, between two parts that are already matched.
+    """Match parts with equal keys, in order, between two neighbouring matched parts.
 
-    Matches are added to `pairs`, and removed from `left` and `right`. `key` is the index of the
-    key.
+    Matches are added to `pairs`, and removed from the indices `left` and `right`. `key` is the
+    index of the key in the contents.
     """
     if not left or not right:
         return

@@ -22,9 +22,8 @@ def listed_serials(given: str | tuple[str, ...] | None) -> tuple[str, ...]:
 class Equipment(definition.Model):
     """Keys that describe the individual equipment at one position in the line.
 
-    In an item or clamp, `serial` is one number or a list of numbers. A list contains the numbers of
-    all pieces that `count` produces; a pair of releases has two numbers per piece. After reading,
-    each piece has its own serial numbers, and `planned_depth` may come from a depth in the label.
+    `serial` is one number or a list of numbers. In an item of a file, the list contains the numbers
+    of all pieces that `count` produces.
     """
 
     serial: Text | Annotated[tuple[Text, ...], Field(min_length=1)] | None = optional(
@@ -58,7 +57,7 @@ class Equipment(definition.Model):
 
         Parameters
         ----------
-        repeat : number of the piece within the `count` of the item, from 0
+        repeat : index of the piece within the `count` of the item
         items : number of serial numbers per piece, such as 2 for a pair of releases
         """
         if not isinstance(self.serial, tuple):
@@ -138,16 +137,12 @@ def read_equipment(item: SourceMapping) -> Equipment:
 
 
 def check_counted(item: SourceMapping, count: int, items: int | None) -> None:
-    """Check the serial numbers and planned depth of an item against its number of pieces.
+    """Check that serial numbers and planned depths of an item fit its number of pieces.
 
-    A list of serial numbers must match the number of pieces. A planned depth requires a single
-    piece.
+    Clamps of the item are checked as well. Only a single piece may have a planned depth.
 
-    Parameters
-    ----------
-    item : an item of the line, with its clamps
-    count : number of pieces that the item produces
-    items : number of serial numbers per piece, such as 2 for a pair of releases; None if unknown
+    `items` is the number of serial numbers per piece, such as 2 for a pair of releases; None if
+    unknown.
     """
     clamps: Any = item.data.get("clamps")
     below = [(("clamps", i), one) for i, one in enumerate(clamps if _is_list(clamps) else ())]

@@ -131,7 +131,7 @@ class LegKeys(Model):
 
 @dataclass(frozen=True)
 class FileLeg:
-    """A leg, with its range of pieces and its two end connections.
+    """A leg of a net, with the range of its pieces and its two end connections.
 
     The indices of its pieces run from `first` up to, but not including, `end`.
     """
@@ -143,9 +143,9 @@ class FileLeg:
     bottom: EndKeys
 
     def grown(self, index: int, more: int) -> FileLeg:
-        """Return the leg with its range adjusted after `more` pieces were inserted below a piece.
+        """Return the leg after `more` pieces were inserted below the piece with the given index.
 
-        `index` is the index of that piece, which may be in another leg.
+        The piece may be in another leg.
         """
         return replace(
             self,
@@ -160,10 +160,12 @@ class FileLeg:
 
 
 def stand_in_anchor(index: int, item: int) -> Piece:
-    """Create a substitute anchor that has no height and practically unlimited weight.
+    """Create a substitute anchor without height and of practically unlimited weight.
 
-    `index` is the index of the anchor in the line, and `item` is the index of its line item in the
-    file. The id of the anchor is reserved.
+    Parameters
+    ----------
+    index : index of the anchor in the line
+    item : index of the line item of the anchor in the file
     """
     component = Anchor.model_validate({"kind": "anchor", "weight": "1e6 kN"})
     return Piece(index, STAND_IN, "anchor", component, 0.0, None, (), 0, 0, Place(item))

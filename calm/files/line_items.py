@@ -38,8 +38,7 @@ _WORDS = {"at": "place", "top_depth": "top depth", "body_depth": "body depth"}
 class LineReader:
     """Reader that expands the items of a line into pieces.
 
-    Mistakes are added to the problems of the top-level mapping `top`, and remarks to `notices`.
-    `towed` and `in_air` determine which keys and values are allowed.
+    Mistakes are recorded in the top-level mapping `top`, and remarks in `notices`.
     """
 
     def __init__(
@@ -133,8 +132,7 @@ class LineReader:
     def _check_without_kind(self, item: SourceMapping, *, judged: bool) -> None:
         """Check the keys of an item whose component is unknown or has mistakes.
 
-        Unless the keys were `judged` with the definition, keys that no kind has are rejected. A
-        value is checked if its key has the same dimension in all kinds.
+        `judged` means that the keys were already checked with the definition of the component.
         """
         if item.data.get("length", "fit") != "fit":
             self._quantity(item, "length", POSITIVE_LENGTH, "")
@@ -213,7 +211,7 @@ class LineReader:
     def _fit_depth(self, item: SourceMapping, *, fits: bool) -> float | None:
         """Return the depth [m] that determines the length of a piece that is cut to fit.
 
-        This is the depth of the top of the line or, in a tow, of the lower end of the piece.
+        The depth is that of the top of a mooring, or of the lower end of the piece in a tow.
         """
         key, foreign, home = ("top_depth", "body_depth", "tows")
         if self._towed:
@@ -297,9 +295,8 @@ class LineReader:
     ) -> tuple[Piece, ...]:
         """Distribute the serial numbers of an item over the parts of its assembly.
 
-        The numbers are those of the instruments and releases of the assembly or, if it has none, of
-        its floats. The numbers are listed in order: one for each item of a component, and one
-        assembly after another.
+        The numbers belong to instruments and releases or, if there are none, to floats. The numbers
+        of the first assembly come first.
         """
         numbers = item_keys.read_equipment(item).serials
         if not numbers:

@@ -194,15 +194,12 @@ def check_deployed(
 ) -> None:
     """Check the deployed items of a mooring file.
 
-    Each item must be a part of the line and may be listed only once. Only cables and chains may
-    have a length.
+    Each item must be a part of the line, listed once. Only cables and chains may have a length.
 
     Parameters
     ----------
-    deployed : the deployment
     labels : labels of all pieces and clamps in the line
     cables : labels of the cables and chains in the line
-    top : top level of the mooring file
     """
     seen: set[str] = set()
     for number, item in enumerate(deployed.items):

@@ -85,18 +85,13 @@ class MooringFile:
     Attributes
     ----------
     tow : tow settings; None for a mooring
-    pieces : pieces from the top of a mooring to its anchor, or in a tow from the ship to the towed
-        body; with `legs`, the pieces are listed leg by leg
+    pieces : pieces from top to anchor, or in a tow from ship to towed body; with `legs`, leg by leg
     checks : limits of the design check
-    notices : remarks for the user, for instance that a component of the user hides a component of
-        the shipped catalogue, or that levels of a measured current were discarded
+    notices : remarks for the user, such as discarded levels of a measured current
     variants : named environments before validation
     accepts : accepted findings of the design check
-    uncertainty : uncertainties of the inputs
-    looser : limits for which an item of the line has a less strict value than its component
+    looser : limits that an item of the line makes less strict than its component does
     document : title block
-    releases : acoustic releases with their codes
-    deployed : the deployment
     units : display units by dimension
     """
 
@@ -125,10 +120,7 @@ class MooringFile:
 
     @property
     def release(self) -> int | None:
-        """Index of the lowest release in the line, above which all parts are recovered.
-
-        The index is None if the line has no release.
-        """
+        """Index of the lowest release in the line; None if there is no release."""
         releases = [piece.index for piece in self.pieces if piece.component.role == "release"]
         return releases[-1] if releases else None
 
@@ -143,11 +135,9 @@ class MooringFile:
     def anchor_friction(self) -> float:
         """Friction coefficient that would hold the anchor equally well on a level seabed.
 
-        `friction` is the coefficient on the slope, from the anchor or else from `checks:`. The
-        horizontal load H acts in the worst direction, down the slope. With the weight w of the
-        anchor and the angle b of the slope, the anchor holds if
-        H cos b + w sin b <= friction (w cos b - H sin b). On a level seabed, the equivalent
-        coefficient is tan(arctan(friction) - b).
+        With the weight w and the friction coefficient µ, an anchor on the slope b holds a downhill
+        load H if H cos b + w sin b <= µ (w cos b - H sin b). On a level seabed, the equivalent
+        coefficient is tan(arctan(µ) - b).
         """
         own, seabed = self.anchor.friction, self.environment.seabed
         friction = self.checks.anchor_friction if own is None else own
@@ -218,10 +208,9 @@ def check_fit(
 
 
 def legs_of(file: MooringFile) -> tuple[FileLeg, ...]:
-    """Return the legs of a file; in a file without the key `legs`, the whole line is one leg.
+    """Return the legs of a file; without the key `legs`, the whole line is one leg.
 
-    This leg is anchored at its lower end in a mooring, and held by the ship at its upper end in a
-    tow. The other end is free.
+    The lower end of a single mooring line is anchored. In a tow, the ship holds the upper end.
     """
     if file.legs:
         return file.legs
@@ -238,18 +227,18 @@ def leg_numbers(file: MooringFile) -> list[int]:
 
 
 def refuse_several(file: MooringFile) -> None:
-    """Raise UsageError if a file has `legs`; used by functions that need a single line."""
+    """Raise UsageError if a file has `legs`."""
     if file.legs:
         raise UsageError(f"{file.path}: {ONE_LEG_ONLY}")
 
 
 def refuse_tow(file: MooringFile) -> None:
-    """Raise UsageError if a file is a tow; used by functions that need a mooring."""
+    """Raise UsageError if a file is a tow."""
     if file.tow is not None:
         raise UsageError(f"{file.path} is a tow; only a mooring can be used here")
 
 
 def refuse_all_but_moorings(file: MooringFile) -> None:
-    """Raise UsageError if a file is a tow or has `legs`; used by functions for a single line."""
+    """Raise UsageError if a file is a tow or has `legs`."""
     refuse_several(file)
     refuse_tow(file)

@@ -21,17 +21,16 @@ STAND_IN = ""
 
 @dataclass(frozen=True, order=True)
 class Place:
-    """Position of a piece or clamp in the file, used to identify the part after reading.
+    """Position of a piece or clamp in the file.
 
-    `Place(3)` is the fourth item of the line, regardless of the `count` of the items above it, and
-    `Place(3, clamp=0)` is the first clamp of the fourth item.
+    `Place(3)` is the fourth item of the line, and `Place(3, clamp=0)` is its first clamp.
 
     Attributes
     ----------
-    item : index of the item in the `line:` of the file, from 0
-    repeat : index within the `count` of the item, from 0
-    part : index of the piece in an assembly, from 0; -1 for a component
-    clamp : index of the clamp on the piece, from 0; -1 for the piece itself
+    item : index of the item in the `line:` of the file
+    repeat : index within the `count` of the item
+    part : index of the piece in an assembly; -1 for a component
+    clamp : index of the clamp on the piece; -1 for the piece itself
     """
 
     item: int
@@ -66,10 +65,12 @@ class LinePart(Protocol):
 class Clamp:
     """An instrument clamped on a piece.
 
-    `at` is the distance of the clamp from the upper end of the piece, in metres of unstretched
-    length. For a profiler, `travel` gives the distances of the upper and the lower stop from the
-    upper end of the piece (inf for the lower end of the piece), and `at` is the distance of the
-    upper stop. `named` is the label in the file, empty if the file gives none.
+    Attributes
+    ----------
+    at : unstretched distance from the upper end of the piece [m]; for a profiler, `travel[0]`
+    travel : distances of a profiler's upper and lower stop from the upper end of the piece [m];
+        infinite for a stop at the lower end
+    named : label in the file, or ""
     """
 
     use: str
@@ -104,20 +105,14 @@ class Piece:
     Attributes
     ----------
     index : index in the line, 0 at the top (in a tow, at the ship)
-    use, label : id of the component, and label of the piece, which is unique in the line
+    use, label : id of the component, and unique label of the piece
     component : definition of the component, including the overrides in the line
     length : unstretched length [m]; None for a piece that is cut to fit
-    fit_top_depth : intended depth of the top of the line in still water [m], for a piece that is
-        cut to fit
-    clamps : clamps on the piece
-    line, column : position of the item in the text of the mooring file, counted from 1
-    place : place of the piece in the file
-    fit_body_depth : intended depth of the lower end of the piece under tow [m], for a piece that is
-        cut to fit
-    equipment : serial number and other keys of the individual piece
-    measured_load : load under which the length in the file was measured [N]; `length` has been
-        converted to the length without load
-    named : label in the file, empty if the file gives none
+    fit_top_depth : depth of the top of the line in still water, for a piece cut to fit [m]
+    line, column : position in the text of the mooring file, from 1
+    fit_body_depth : depth of the lower end under tow, for a piece cut to fit [m]
+    measured_load : load under which the length in the file was measured [N]
+    named : label in the file, or ""
     """
 
     index: int
@@ -161,9 +156,8 @@ class Piece:
 def holds_instrument(part: Piece | Clamp) -> bool:
     """True if a part is an instrument or a release, or holds one, such as a float with an ADCP.
 
-    A part with another role holds an instrument if it has a tilt limit, a calibration date, a
-    sampling scheme or a battery date. A float with a serial number holds an instrument, too. In
-    cables, chains, connecting hardware and anchors, a serial number identifies the part itself.
+    A part holds an instrument if it has a tilt limit, a calibration date, a sampling scheme or a
+    battery date. A float also holds one if it has a serial number.
     """
     component, own = part.component, part.equipment
     data = (component.max_tilt, component.warn_tilt, own.calibrated, own.sampling,

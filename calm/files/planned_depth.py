@@ -1,26 +1,22 @@
 """Planned depth of a piece or a clamp, found in its label.
 
-A label states a depth if it has exactly one number that
+A label gives a depth if it contains exactly one number in one of these forms:
 
-- is followed by a unit of length (``meter 200 m``, ``CTD400m``, ``SBE37 @ 1500m``, ``buoy 650
-  ft``),
-- or follows ``@``,
-- or consists of four digits at the end, after a hyphen or an underscore, and begins with 0
-  (``CTD_0400``) or is a multiple of 50 (``CTD_1500``): others, as in ``MC_1729``, may be serial
-  numbers.
+- followed by a unit of length (``CTD400m``, ``buoy 650 ft``);
+- after ``@`` (``SBE37 @ 1500m``);
+- four digits at the end, after a hyphen or an underscore, that begin with 0 or are a multiple of 50
+  (``CTD_0400``, ``CTD_1500``).
 
 The following numbers are not depths:
 
-- a serial number, or another number after ``SN``, ``serial``, ``no.``, ``#`` or the like;
-- the depth rating of the component, unless it follows ``@`` (``Aquadopp 6000 m``);
-- four digits that do not begin with 0 after a model that has digits itself (``SBE37_1700``), which
-  are usually a serial number;
-- any number in a label that mentions a length, a range or a height, by words such as cable, wire,
-  rope, chain, ``range``, ``rated``, ``above``, ``below`` or ``mab``;
-- a range such as ``50-1000 m``, or one of its two numbers; ``1 200 m``, ``3x100 m`` or ``1.2e2 m``.
+- a serial number, such as any number after ``SN``, ``serial`` or ``#``;
+- the depth rating of the component, unless it follows ``@``;
+- four digits that do not begin with 0 after a model with digits (``SBE37_1700``);
+- any number in a label with words such as cable, length, range, ``rated`` or ``above``;
+- a range (``50-1000 m``), a product (``3x100 m``), ``1 200 m`` or ``1.2e2 m``;
+- a number below 10 m in the label of a float, which is a size.
 
-Labels of cables, chains, connectors, releases and anchors state no planned depth, nor do those of
-profilers, which travel. In the label of a float, a number below 10 m is a size and not a depth.
+Only labels of instruments, floats and clamped parts are searched, except those of profilers.
 """
 
 from __future__ import annotations
@@ -50,8 +46,8 @@ _WITH_UNIT = re.compile(
 _AFTER_AT = re.compile(r"(@\s*)(\d{1,3}(?:,\d{3})+|\d+(?:\.\d+)?)()(?![\w.,/])")
 _AT_THE_END = re.compile(r"^(.*)[_-](\d{4})$")
 _ROUND = 50
-"""Four-digit numbers in a label are depths only if they are multiples of this value [m]. Only one
-serial number in 50 is such a multiple.
+"""Four-digit numbers that do not begin with 0 are depths only if they are multiples of this value
+[m], which few serial numbers are.
 """
 _FOOT = 0.3048
 _LEAST_OF_A_FLOAT = 10.0
@@ -60,10 +56,8 @@ _LEAST_OF_A_FLOAT = 10.0
 def depth_in_label(label: str, serial: str | None = None, rating: float | None = None) -> float:
     """Return the depth that a label contains [m]; NaN if it contains none.
 
-    Parameters
-    ----------
-    serial, rating : serial number of the part, and depth rating of the component [m]; a number that
-        equals one of these is not a planned depth, unless the number follows ``@``
+    A number that equals `serial` or the depth `rating` [m] of the component is not a depth, unless
+    the number follows ``@``.
     """
     text = _NUMBERED.sub("|", label)
     if any(pattern.search(text) for pattern in (_LENGTHS, _RANGE, _DOUBTFUL)):

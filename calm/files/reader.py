@@ -123,16 +123,13 @@ class _ReadLine(NamedTuple):
 
 
 class MooringReader:
-    """Reader of a mooring file, which reads the line once for use in several environments.
+    """Reader of a mooring file, for use in several environments.
 
     Parameters
     ----------
-    catalogs : catalogue files, which take precedence over the user's and the shipped catalogue;
-        later files take precedence over earlier files
-    text : text to read instead of the file, which then need not exist; files to which the text
-        refers are looked up in the folder of `path`
-    stand_in : whether a line without an anchor gets a substitute anchor of practically unlimited
-        weight, with the id `STAND_IN`
+    catalogs : catalogue files, as in `Catalogue.load`
+    text : text to read instead of the file; paths in the text are relative to the folder of `path`
+    stand_in : whether a line without an anchor gets a substitute anchor with the id `STAND_IN`
 
     Raises
     ------
@@ -346,17 +343,16 @@ class EnvironmentFileKeys(Model):
 def choose_environment(
     top: SourceMapping, chosen: str | Path | None, *, towed: bool
 ) -> tuple[SourceMapping, str | None] | None:
-    """Select an environment, and return its unvalidated section and its name.
+    """Select an environment; return its unvalidated section and its name, or None.
 
-    A variant or environment file is based on the default environment of the mooring file. The other
-    environments in the mooring file are checked here, so that all mistakes are reported. Return
-    None if the environment is missing or cannot be read.
+    The default environment supplies missing keys of another environment. Mistakes in all
+    environments of the mooring file are recorded.
 
     Parameters
     ----------
     top : top level of the mooring file
     chosen : name of a variant in the file, or path of an environment file; None for the default
-    towed : whether the file is a tow; a tow without an environment is in deep, still sea water
+    towed : whether the file is a tow, which by default is in deep, still sea water
     """
     own = _child(top, "environment")
     if own is None:

@@ -1,7 +1,6 @@
 """Design rules as text: title, quantity, checked value, limit and source.
 
-Findings, reports, the manual and `checks: accept:` use this table. The functions that apply the
-rules are in `calm.checks`.
+The functions that apply the rules are in `calm.checks`.
 """
 
 from dataclasses import dataclass
@@ -13,15 +12,13 @@ class RuleText:
 
     Attributes
     ----------
-    title : title for users
-    quantity : name in `calm.quantities` of the values and limits; "" for a rule without values
-    judges : description of the value that is checked
-    limit : sentences on the limit, and on the state of a finding beyond it
+    quantity : name of the values in `calm.quantities`; "" for a rule without values
+    judges : description of the checked value
+    limit : sentences on the limit, and on findings beyond it
     source : source of the rule and of its default limit
-    unseen : reason why the rule cannot check the profiles of a batch; "" if it can
-    figures : component keys whose values the rule needs
-    has_ratio : whether value and limit are a demand and a capacity, so that their ratio is
-        meaningful
+    unseen : reason why the rule cannot check batch profiles, or ""
+    figures : component keys that the rule needs
+    has_ratio : whether the ratio of value and limit is meaningful
     """
 
     title: str

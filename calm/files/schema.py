@@ -1,8 +1,6 @@
 """JSON Schema of the mooring file, for completion and checks in text editors.
 
-The schema is generated from the models that read the file. The schema contains the keys and
-kinds, and requires a unit for each quantity. Conditions that involve the catalogue or several keys
-are checked only by the reader.
+Conditions that involve the catalogue or several keys are checked only by the reader.
 """
 
 from collections.abc import Iterable

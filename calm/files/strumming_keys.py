@@ -1,16 +1,4 @@
-"""Solver key `strumming:`: increase of the drag coefficient Cn of cables due to vibration.
-
-===================================== ==========================================
-written                               read as
-===================================== ==========================================
-`none`                                None
-`{factor: 1.5}`                       `StrummingFactor`
-`{cn: 1.85}`                          `ConstantCn`
-`bourget-marichal`, or a mapping with `BourgetMarichalKeys`
-that as its `model`
-`vandiver`, `blevins`, `skop-griffin` `AmplitudeModel`
-===================================== ==========================================
-"""
+"""Solver key `strumming:`: increase of the drag coefficient Cn of cables due to vibration."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -21,12 +21,12 @@ _TOO_WIDE = (
 
 @dataclass(frozen=True)
 class Spread:
-    """Uncertainty of a value, relative to the value; uncertainties of angles are in degrees.
+    """Uncertainty as a fraction of a value; for an angle, uncertainty in degrees.
 
     Attributes
     ----------
-    deviation : standard deviation of a normal distribution; None if `between` is set
-    between : 5th and 95th percentile; None if `deviation` is set
+    deviation : standard deviation of a normal distribution, or None
+    between : 5th and 95th percentile, or None
     """
 
     deviation: float | None = None

@@ -121,10 +121,7 @@ def table_of(value: object) -> TableKeys | None:
 def quantity_table(table: TableKeys, section: SourceMapping, *place: str) -> QuantityTable:
     """Build a table of quantities that reports mistakes at their positions in the file.
 
-    Parameters
-    ----------
-    table : the validated table
-    section, place : mapping in the file, and keys that lead from the mapping to the table
+    The keys in `place` lead from the mapping `section` to the table.
     """
 
     def problem(at: Sequence[str | int], message: str) -> Problem:

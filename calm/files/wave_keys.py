@@ -86,13 +86,8 @@ class WaveKeys(Model):
 def read_waves(keys: WaveKeys, section: SourceMapping, open_files: bool) -> tuple[SeaState, ...]:
     """Read the sea states of `waves:`; return an empty tuple if there are mistakes.
 
-    Each sea state in a scatter table has the share of time for which it occurs. An additional
-    design sea state has a share of 0.
-
-    Parameters
-    ----------
-    section : the environment
-    open_files : whether scatter and spectrum files are read; otherwise the result is empty
+    A sea state in a scatter table has its share of time. An additional design sea state has the
+    share 0. Without `open_files`, the result is empty.
     """
     before = len(section.problems)
     measured = keys.spectrum not in SPECTRA

@@ -1,9 +1,7 @@
 """Parse YAML files with the position of each value, and reject malicious files.
 
-Scalars are kept as text, because the meaning of `1000` depends on the field. Anchors, aliases and
-tags are rejected, so that nothing can be expanded.
-
-Errors of pydantic are converted to messages of one line, with the place in the file.
+Scalars are kept as text, because the meaning of `1000` depends on the key. Anchors, aliases and
+tags are rejected.
 """
 
 from __future__ import annotations
@@ -32,7 +30,7 @@ class Document:
     ----------
     path : path as shown in messages
     data : mappings, lists, text and None
-    root : top-level node, which gives the positions of values; None if the data have no text
+    root : top-level node; None if the data have no text
     """
 
     path: str
@@ -42,16 +40,13 @@ class Document:
     def problem(
         self, location: Sequence[str | int], message: str, *, key: bool = False, lacks: str = ""
     ) -> Problem:
-        """Build a problem at the position of a value, or of its key.
+        """Create a problem at the position of a value, or of its key if the value is empty.
 
-        A problem with a missing value is placed at the nearest enclosing value. A problem with an
-        empty value is placed at its key.
+        A problem with a missing value is placed at the nearest enclosing value.
 
         Parameters
         ----------
-        location : location of the value
-        message : the message
-        key : whether to place the problem at the key instead of the value
+        key : whether to use the position of the key in any case
         lacks : name of the missing part, if the file is incomplete but not wrong
         """
         node = place = self.root
@@ -100,12 +95,10 @@ class SourceMapping:
 
     Attributes
     ----------
-    document, location : document and location of the mapping itself, not of its base; problems
-        without a key are reported there
-    data : keys and values of the mapping and, for missing keys, of its base
-    base : base mapping, or None
+    document, location : origin of the mapping itself, not of its base
+    data : keys and values, including those of the base
     own : keys of the mapping itself
-    problems : list to which mistakes are added; all mappings of a file share it
+    problems : list of mistakes, common to all mappings of a file
     """
 
     document: Document
@@ -184,9 +177,7 @@ def validate(
 
     Parameters
     ----------
-    model : data model of the mapping
-    section : the mapping
-    also_allowed : keys that may be in the mapping although they do not belong to the model
+    also_allowed : keys that messages about an unknown key may suggest, besides those of the model
     context : context for the validators of the model
     """
     try:
@@ -256,7 +247,7 @@ def _explain(
 def _existing(data: Any, loc: tuple[int | str, ...]) -> tuple[Location, Any]:
     """Return the part of a location that exists in the data, and the value there.
 
-    A location of pydantic also contains tags of unions, which are omitted.
+    Tags of unions, which pydantic adds to locations, are omitted.
     """
     location: list[str | int] = []
     for part in loc:
@@ -354,7 +345,7 @@ def _flow(value: object) -> str:
 
 
 def _form(model: type[BaseModel], loc: tuple[int | str, ...]) -> Any:
-    """Return the type at a location of pydantic, which may contain tags of unions."""
+    """Return the type that a model declares for a location, which may contain tags of unions."""
     form: Any = model
     for part in loc:
         models = _models_in(form)

@@ -26,8 +26,7 @@ def without_colon(text: str) -> str:
 def syntax_mistakes(text: str, error: MarkedYAMLError) -> list[Mistake]:
     """Explain an error of the YAML parser; return one or more mistakes with their positions.
 
-    Every line that is indented with a tab is reported. For an error of an unknown kind, the result
-    is the message of the parser.
+    An error of an unknown kind keeps the message of the parser.
     """
     lines = text.splitlines()
     if "\\t" in str(error.problem):
@@ -89,11 +88,7 @@ def _mistake(lines: list[str], error: MarkedYAMLError) -> Mistake | None:
 
 
 def _colon(lines: list[str], mark: Mark) -> Mistake | None:
-    """Explain a misplaced colon.
-
-    The colon may be the second in its line, in a line below a line without a colon, or in a line
-    that is indented too far.
-    """
+    """Explain a misplaced colon, such as a second colon in a line or a line indented too far."""
     line = lines[mark.line]
     if key := _KEY.match(line[: mark.column]):
         name, value = key[0].strip(), line[key.end() :].strip()

@@ -1,7 +1,7 @@
 """Position that best fits acoustic ranges, and its uncertainty.
 
-Rays are straight lines from the ship's transducer. The residuals of accepted ranges are assumed to
-be normal with equal variance. This module also writes the position into the text of a mooring file.
+Rays are straight lines from the ship's transducer. The residuals of ranges in use are assumed to be
+normal with equal variance.
 """
 
 from dataclasses import asdict, dataclass
@@ -46,8 +46,7 @@ class SecondPlace:
     ----------
     latitude, longitude : WGS 84 [degrees]
     distance : distance from the chosen position [m]
-    rms : square root of (sum of squared residuals / degrees of freedom) [m]; NaN without redundant
-        ranges
+    rms : as in `Located` [m]
     """
 
     latitude: float
@@ -60,26 +59,23 @@ class SecondPlace:
 class Located:
     """Position of a transponder, with its uncertainty and the residuals of the ranges.
 
+    Values that the ranges do not determine are NaN.
+
     Attributes
     ----------
-    survey : the ranges
     latitude, longitude : WGS 84 [degrees]
     depth : depth below the surface [m]
-    horizontal_95 : semi-major axis of the 95 % ellipse [m]; NaN if there are no redundant ranges,
-        or if the ranges do not constrain the ellipse
-    ellipse : both semi-axes [m], and bearing of the major axis [degrees]
+    horizontal_95 : semi-major axis of the 95 % ellipse [m]
+    ellipse : semi-major and semi-minor axis [m], and bearing of the major axis [degrees]
     depth_95 : half of the 95 % interval of the depth [m]; 0 if the depth was given
-    rms : square root of (sum of squared residuals / degrees of freedom) of the ranges in use [m];
-        NaN without redundant ranges
+    rms : square root of (sum of squared residuals / degrees of freedom) [m]
     residuals : (n,) measured minus computed ranges [m]
-    used : (n,) mask of the ranges in use; False for rejected ranges
-    sound_speed : harmonic mean of the speed of sound along the ray [m/s]
-    warnings : warnings about geometry and consistency
+    used : (n,) mask of the ranges in use
+    sound_speed : harmonic mean along the ray [m/s]
     place : (3,) position east, north, up in the frame of the survey [m]
-    depth_given : whether the depth was given
     second : another position that fits the ranges, or None
-    undecided : whether both positions remain possible
-    doubts : reasons why the position must not be written to a file without confirmation
+    undecided : whether the choice between the position and `second` is doubtful
+    doubts : reasons not to write the position to a file without confirmation
     """
 
     survey: Survey
@@ -141,20 +137,18 @@ def locate(
 
     Parameters
     ----------
-    survey : ranges, or the path of their file; a file is read with the transducer at the surface
-    sound : speed of sound that converts times to ranges, as a profile or a constant [m/s]
+    survey : ranges, or the path of their file
+    sound : speed of sound, as a profile or a constant [m/s]
     depth : depth of the transponder [m]; None to estimate the depth
     near : planned latitude and longitude [degrees], used to choose between two positions that fit
-        the ranges; each position is judged by its distance from the planned position, relative to
-        the usual fallback of an anchor
 
     Raises
     ------
     InputError
-        The file contains no ranges.
+        The file of the ranges has mistakes.
     UsageError
-        There are fewer ranges than unknowns, no range is as long as the depth, or the ranges do not
-        intersect or are nearly horizontal.
+        There are too few ranges, or the ranges do not intersect, are nearly horizontal, or are
+        wrong by a factor of about 2.
     """
     survey = survey if isinstance(survey, Survey) else read_ranges(Path(survey))
     sound = sound if isinstance(sound, Sound) else Sound.constant(sound)
@@ -253,15 +247,14 @@ def _more_likely(
     near: tuple[float, float] | None,
     scattered: float,
 ) -> tuple[Floats, Floats | None, str]:
-    """Choose the more likely of two positions, using the planned position if it is known.
+    """Choose the more likely of two positions, if possible by the planned position.
 
-    The likelihood combines the residuals of the ranges, relative to `scattered` [m], with the
-    distance from the planned position. Both are assumed to be normal. Both positions are kept if
-    the odds are low, or if the more likely position fits the ranges far worse.
+    The residuals (standard deviation `scattered` [m]) and the distance from the planned position
+    are assumed to be normal.
 
     Returns
     -------
-    The more likely position, the other position, and the reason for keeping both ("" if decided).
+    The more likely position, the other position, and the reason why the choice is doubtful, or "".
     """
     if other is None:
         return x, None, ""
@@ -304,9 +297,9 @@ def _residual_deviation(residuals: Floats, freedom: int) -> float:
 def _intervals(
     jacobian: Floats, rms: float, freedom: int, depth_given: bool, farthest: float
 ) -> tuple[float, float, float, float]:
-    """Return both semi-axes [m] and bearing [degrees] of the 95 % ellipse, and depth interval [m].
+    """Return semi-axes [m] and bearing [degrees] of the 95 % ellipse, and depth interval [m].
 
-    The depth interval is half of its 95 % interval. Intervals as wide as the longest range are NaN.
+    The depth interval is half of the 95 % interval. Intervals wider than the longest range are NaN.
     """
     from scipy.stats import chi2, norm
     from scipy.stats import f as fisher
@@ -358,7 +351,7 @@ def located_mooring(path: Path) -> MooringFile:
     InputError
         The file has mistakes.
     UsageError
-        The file describes a tow, or a mooring with several legs.
+        The file describes a tow or several legs.
     """
     file = read_mooring(path)
     refuse_all_but_moorings(file)
@@ -370,13 +363,11 @@ def with_deployed(
 ) -> tuple[WorkingFile, str, tuple[str, ...], tuple[str, ...]]:
     """Write the position to `deployed` in the text of a mooring file, without saving the file.
 
-    The rest of the text, including comments and other keys of `deployed`, is unchanged.
+    The rest of the text is unchanged.
 
     Parameters
     ----------
-    path : path of the mooring file
     before : the mooring file as read by `located_mooring`
-    located : the position
     water_depth : depth of the water at the anchor [m]
 
     Returns
@@ -389,8 +380,7 @@ def with_deployed(
     InputError
         With the new position, the file has mistakes.
     UsageError
-        The YAML of the file cannot be edited automatically, or the planned position suggests that
-        latitude and longitude are exchanged.
+        The file cannot be edited automatically, or latitude and longitude appear to be exchanged.
     """
     sentences, doubts = _plan_deviation(before, located, water_depth)
     file = WorkingFile(path)

@@ -1,9 +1,6 @@
 """Model of acoustic ranges: computed ranges, robust fit, and rejection of outliers.
 
-If there are enough ranges, a robust fit comes first. Each doubtful range is then tested against the
-others by Student's t-test, with a probability of 1 % for a false rejection among all ranges. If
-there are few ranges, all are used. Inconsistent surveys, and surveys with poor geometry, are
-reported.
+Outliers are rejected by Student's t-test, with a probability of 1 % for any false rejection.
 """
 
 from collections.abc import Iterator
@@ -34,7 +31,7 @@ APART = 10.0
 class RangeModel:
     """Model of the ranges to a transponder.
 
-    The unknowns are east, north and, unless the depth is given, up [m].
+    The unknowns of the fit are east, north and, unless the depth is given, up [m].
     """
 
     survey: Survey
@@ -45,7 +42,7 @@ class RangeModel:
 
     @property
     def unknowns(self) -> int:
-        """Number of unknowns."""
+        """Number of unknown coordinates of the transponder."""
         return 2 if self.depth is not None else 3
 
     def place(self, x: Floats) -> Floats:
@@ -85,7 +82,10 @@ class RangeModel:
         return np.stack(columns, axis=1) / (2.0 * step)
 
     def fitted(self) -> tuple[Floats, Booleans]:
-        """Fit the position; return the fitted unknowns, and a mask of the ranges in use."""
+        """Fit the position; return the fitted unknowns and a mask of the ranges in use.
+
+        All ranges are used if there are too few to test for outliers.
+        """
         count = len(self.ships)
         used = np.ones(count, dtype=bool)
         if count <= self.unknowns + SPARE:
@@ -120,7 +120,7 @@ class RangeModel:
         return min(found, key=lambda each: each[0])[1]
 
     def _start_positions(self) -> list[Floats]:
-        """Return positions below the middle of the survey, and towards its four sides."""
+        """Return starting positions: below the middle of the survey, and on its four sides."""
         middle = self.ships.mean(axis=0)
         _, _, axes = np.linalg.svd((self.ships - middle)[:, :2], full_matrices=True)
         reach = float(np.median(self.measured(np.array([0.0, 0.0, -1000.0])[: self.unknowns])))
@@ -131,7 +131,7 @@ class RangeModel:
         return starts
 
     def _below(self, x: Floats) -> Floats:
-        """Move a position that converged above the ship to its mirror image below."""
+        """Replace a position above the ship by its mirror image below the ship."""
         if self.depth is None:
             level = float(self.ships[:, 2].mean())
             x = np.array([x[0], x[1], min(x[2], 2.0 * level - x[2])])
@@ -148,10 +148,9 @@ class RangeModel:
         return self._below(fit.x)
 
     def tested(self, x: Floats, used: Booleans) -> Booleans:
-        """Reject the worst outlier, or restore a rejected range whose residual is small.
+        """Reject the worst outlier, or restore a rejected range that fits; return the new mask.
 
-        A range is tested by the ratio of its residual to the standard error, which is estimated
-        from the other ranges. Return the new mask of the ranges in use.
+        Each residual is compared with its standard error, estimated from the other ranges in use.
         """
         from scipy.stats import t as student
 
@@ -185,7 +184,7 @@ class RangeModel:
         Raises
         ------
         UsageError
-            The factor is about 2 or 0.5: one-way and two-way times or distances were confused.
+            The factor is about 2 or 0.5, as if one-way and two-way values were confused.
         """
         from scipy.optimize import least_squares
         from scipy.stats import t as student
@@ -227,13 +226,11 @@ class RangeModel:
         return [f"{text}: were they taken with another speed of sound?"]
 
     def another_place(self, x: Floats, used: Booleans, scatter: float) -> Floats | None:
-        """Find another position that fits the ranges nearly as well.
-
-        Return None if there is no such position. The search starts on both sides of the track.
+        """Find another position that fits the ranges nearly as well, or return None.
 
         Parameters
         ----------
-        x : unknowns of the fitted position
+        x : fitted position, as values of the unknowns
         used : mask of the ranges in use
         scatter : root mean square residual up to which any position counts as a fit [m]
         """
@@ -254,7 +251,10 @@ class RangeModel:
 
 
 def scatter(residuals: Floats, unknowns: int) -> float:
-    """Estimate the standard deviation of residuals [m] from the median of their absolute values."""
+    """Estimate a standard deviation [m] from the median of absolute residuals (n,) [m].
+
+    The result is at least `FLOOR`.
+    """
     count = len(residuals)
     freedom = max(count - unknowns, 1)
     return max(1.4826 * float(np.median(residuals)) * sqrt(count / freedom), FLOOR)
@@ -284,14 +284,14 @@ position poorly; ranges that are all farther constrain the depth poorly.
 def geometry_warnings(
     ships: Floats, place: Floats, below: float, depth_given: bool
 ) -> Iterator[str]:
-    """Yield a warning for each weakness of the survey geometry that makes the position uncertain.
+    """Yield a warning for each weakness of the survey geometry.
 
     Parameters
     ----------
     ships : (n, 3) positions of the transducer [m]
     place : (3,) position of the transponder [m]
     below : depth of the transponder below the transducer [m]
-    depth_given : whether the depth of the transponder is known
+    depth_given : whether the depth was not estimated
     """
     away = (ships - place)[:, :2]
     distance = np.linalg.norm(away, axis=1)

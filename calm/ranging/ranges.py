@@ -1,15 +1,11 @@
 """Read acoustic ranges from a table of ship positions with `range[m]` or `time[s]`.
 
-The usual form is CSV with the columns `latitude[deg]`, `longitude[deg]` and `range[m]` or
-`time[s]`. Other formats are converted to this form: positions as degrees and minutes in two
-columns; column names of deck boxes and event logs; and two formats without a heading, from programs
-that locate an anchor by ranges:
+The usual form is CSV with a header. Column names of deck boxes and event logs are accepted, as are
+degrees and minutes in two columns. Two formats have no column headings:
 
-- five columns: degrees and minutes of latitude and of longitude, and one-way time in seconds
-  (WHOI);
-- three columns: range, latitude and longitude. Above the ranges are a row with the target, if any,
-  a row with water depth, height of the release and depth of the transducer, and a row with the drop
-  position (NOC).
+- WHOI, five columns: degrees and minutes of latitude and of longitude, and one-way time [s].
+- NOC, three columns: range, latitude and longitude. Above the ranges are three rows: the target
+  (optional); water depth, height of the release and depth of the transducer; the drop position.
 """
 
 from __future__ import annotations
@@ -42,16 +38,14 @@ _COLUMNS = {"latitude": "latitude", "longitude": "longitude", "range": "length",
 
 @dataclass(frozen=True)
 class Survey:
-    """Acoustic ranges taken by a ship.
+    """Acoustic ranges measured by a ship.
 
     Attributes
     ----------
-    path : path of the file
-    line : line number of each range
+    line : line number of each range in the file
     latitude, longitude : (n,) position of the transducer, WGS 84 [degrees]
     measured : (n,) ranges [m], or two-way times if `timed` [s]
     transducer : depth of the transducer [m]
-    notices : notes on excluded rows and columns
     """
 
     path: Path
@@ -72,21 +66,19 @@ class Survey:
 
 
 def read_ranges(path: Path, transducer: float = 0.0, hemisphere: str = "") -> Survey:
-    """Read the ranges of a file.
-
-    Rows without a range (blank or `nan`), and rows that repeat another row, are excluded. Other
-    columns are ignored.
+    """Read the acoustic ranges in a file, without blank and repeated rows.
 
     Parameters
     ----------
-    transducer : depth of the transducer of the ship [m]; 0 means the depth in the file, or the
-        surface if the file has no depth
-    hemisphere : letters such as ``"S,W"`` that apply to positions with neither letter nor sign
+    transducer : depth of the transducer [m]; 0 for the depth in the file, if any
+    hemisphere : letters such as ``"S,W"`` for positions with neither letter nor sign
 
     Raises
     ------
     InputError
-        The file has mistakes; the error lists all of them with their lines.
+        The file has mistakes; all of them are listed.
+    UsageError
+        `hemisphere` is not a pair of letters such as ``"S,W"``.
     """
     problems: list[Problem] = []
     signs = hemisphere_signs(hemisphere)
@@ -146,7 +138,7 @@ def read_ranges(path: Path, transducer: float = 0.0, hemisphere: str = "") -> Su
 
 
 def hemisphere_signs(letters: str) -> dict[str, float]:
-    """Return the signs of latitude and longitude for two letters that name the hemispheres.
+    """Return the signs of latitude and longitude for two hemisphere letters such as ``S,W``.
 
     Raises
     ------
@@ -214,7 +206,7 @@ _EXAMPLE = "depth[m],sound_speed[m/s]"
 
 @dataclass(frozen=True)
 class Sound:
-    """Profile of the speed of sound, linear between its depths and constant above and below them.
+    """Profile of the speed of sound, linear between its depths and constant beyond them.
 
     Attributes
     ----------
@@ -233,8 +225,7 @@ class Sound:
     def mean(self, above: float, below: float) -> float:
         """Return the harmonic mean of the speed between two depths [m/s].
 
-        A straight ray has the same length in every metre of depth. The travel time is therefore the
-        length of the ray divided by this mean speed, whatever the slope of the ray.
+        The travel time of a straight ray of any slope is its length divided by this speed.
         """
         if len(self.speed) == 1 or below - above < 1e-6:
             return float(np.interp(0.5 * (above + below), self.depth, self.speed))
@@ -250,13 +241,12 @@ class Sound:
 
 
 def read_sound(path: Path) -> Sound:
-    """Read a profile from a CSV file with the header ``depth[m],sound_speed[m/s]``.
+    """Read a sound-speed profile from CSV with the header ``depth[m],sound_speed[m/s]``.
 
     Raises
     ------
     InputError
-        The file has mistakes, such as depths that do not increase or implausible speeds; the error
-        lists all of them.
+        The file has mistakes, such as implausible speeds; all of them are listed.
     """
     problems: list[Problem] = []
     columns = read_named_columns(delimited.read_table(path, _EXAMPLE), _OF_SOUND, problems)
@@ -312,12 +302,12 @@ _BareRow = tuple[int, list[str]]
 
 
 def _survey_table(path: Path) -> tuple[delimited.TextTable, float | None, list[str]]:
-    """Read the table of a survey, the depth of its transducer [m] if given, and notices.
+    """Read the table of a survey; return it with the transducer depth [m], if given, and notices.
 
     Raises
     ------
     InputError
-        The file is unreadable or empty, or has neither a header nor a known form without header.
+        The file is unreadable or empty, or its form is unknown.
     """
     rows = _bare_rows(path)
     columns = len(rows[0][1]) if rows else 0
@@ -360,9 +350,9 @@ def _bare_rows(path: Path) -> list[_BareRow]:
 
 
 def _row_of_depths(rows: Sequence[_BareRow]) -> int:
-    """Return the number of the row with the depths: 1, or 2 if the target is above it; else 0.
+    """Return the number of the row with the depths: 2 if a target row precedes it, else 1.
 
-    The last two cells of all other rows must be positions of one survey.
+    Return 0 if the last two cells of the other rows are not positions of one survey.
     """
     if len(rows) <= 4:
         return 0

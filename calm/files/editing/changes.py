@@ -141,7 +141,6 @@ class Page:
 
         Parameters
         ----------
-        location : location of the list
         index : index of the first new item
         values : the items; a `Worded` list supplies items with their own text
         """
@@ -213,13 +212,7 @@ REMOVED = object()
 def with_value(data: Any, location: Location, value: Any) -> Any:
     """Return a copy of data in which the value at a location is replaced or removed.
 
-    Missing mappings above the location are added.
-
-    Parameters
-    ----------
-    data : data, as in `Node.data`
-    location : keys and indices that lead to the value
-    value : the value, or `REMOVED` to remove the key
+    Missing mappings above the location are added. The value `REMOVED` removes the key.
     """
     if not location:
         return data_of(value)
@@ -243,9 +236,9 @@ def has_control(data: Any) -> bool:
 def cells_that_differ(
     old: Any, new: Sequence[Sequence[str | None]]
 ) -> list[tuple[int, int, str]] | None:
-    """List the cells whose text changes between two tables, each as (row, column, new text).
+    """List the changed cells of a table, each as (row, column, new text).
 
-    Return None if the tables have different shapes, or if a cell loses its value.
+    Return None if the two tables have different shapes, or if a cell loses its value.
     """
     rows = old if isinstance(old, list | tuple) else []
     if [len(row) if isinstance(row, list | tuple) else -1 for row in rows] != [*map(len, new)]:
@@ -282,7 +275,7 @@ def lines_of(text: str) -> list[EndedLine]:
 def retyped(text: str, lines: Sequence[str]) -> str:
     """Replace the content of a text with `lines` from a text editor; keep the line breaks.
 
-    The `lines` contain no line breaks. An added line gets the usual line break of the text.
+    Added lines get the usual line break of the text.
     """
     old = lines_of(text)
     usual = WritingStyle.of(text, None).line_break
@@ -298,10 +291,7 @@ def retyped(text: str, lines: Sequence[str]) -> str:
 
 
 def _taken_from(old: Sequence[str], new: Sequence[str]) -> list[int | None]:
-    """Return, for each new line, the index of the old line that it equals or replaces.
-
-    The index is None for an added line.
-    """
+    """Return the index of the old line that each new line equals or replaces; None if added."""
     # Comparing is slow, and usually only one line differs.
     head = _common_start(old, new)
     tail = _common_start(old[head:][::-1], new[head:][::-1])

@@ -46,20 +46,13 @@ def clamps_of(item: int) -> Location:
 class Draft:
     """A mooring or tow file as text.
 
-    Every edit returns a new draft. Comments, order, quotes, brackets, indentation, line breaks and
-    a byte-order mark are kept. New text follows the style of the file. A comment directly above an
-    item belongs to the item. After each edit, the text is parsed to check that nothing else has
-    changed.
-
-    Parameters
-    ----------
-    text : the text, with its line breaks and any byte-order mark
+    Every edit returns a new draft. Layout and comments are kept, and new text follows the style of
+    the file. A comment directly above an item belongs to the item.
 
     Raises
     ------
     EditError
-        An edit is impossible because an item does not exist, the text has `problems`, or the layout
-        of the text does not allow the edit.
+        An item does not exist, the text has `problems`, or its layout prevents the edit.
     """
 
     text: str
@@ -77,9 +70,9 @@ class Draft:
 
     @cached_property
     def problems(self) -> tuple[Problem, ...]:
-        """Problems in the YAML text; if there are any, the file can only be edited as plain text.
+        """Problems in the YAML text, each with an empty `path`.
 
-        The `path` of each problem is empty.
+        A file with problems can only be edited as plain text.
         """
         if self._root is not None:
             return ()
@@ -135,11 +128,9 @@ class Draft:
 
         Parameters
         ----------
-        index : index of the new item
         values : keys and values of the new item
         rows : location of the list: `LINE`, the result of `clamps_of`, or another list
-        above : at an index between two legs, True makes the item the first of the lower leg, and
-            False makes it the last of the upper leg
+        above : at an index between two legs, whether the item belongs to the lower leg
         """
         self._check_clamped_item(rows)
         return self._add(*self.lists.place_in(rows, index, above=above), [values])
@@ -171,8 +162,6 @@ class Draft:
 
         Parameters
         ----------
-        index : index of the item
-        to : new index of the item
         rows : location of the list
 
         Raises
@@ -208,7 +197,6 @@ class Draft:
         Parameters
         ----------
         index : index of the first new item
-        snippets : texts of the items, as returned by `copy`
         rows, above : as in `insert`
         """
         self._check_clamped_item(rows)
@@ -217,13 +205,11 @@ class Draft:
         return self._add(*place, worded) if worded else self
 
     def put(self, index: int, key: str, value: Value | None, rows: Location = LINE) -> Draft:
-        """Set a key of an item.
+        """Set a key of an item; the value None removes the key.
 
         Parameters
         ----------
         index : index of the item
-        key : the key
-        value : the value; None removes the key
         rows : location of the list
         """
         own, number = self.lists.place_in(rows, index, above=True)
@@ -231,10 +217,10 @@ class Draft:
         return self.put_at((*own, number, key), value)
 
     def put_at(self, location: Location, value: Value | None) -> Draft:
-        """Set the value at a location, and add any missing mappings that enclose the location.
+        """Set the value at a location, adding missing mappings around it.
 
-        The value None removes the key. Enclosing mappings that become empty are removed as well,
-        except for `environment` and the named environments.
+        The value None removes the key and any mappings that become empty, except `environment` and
+        the named environments.
         """
         page, location = self._page, self.lists.real(location)
         if value is not None:
@@ -257,9 +243,8 @@ class Draft:
 
         Parameters
         ----------
-        location : location of the table
         columns : column names with units
-        rows : rows of values; if the shape is unchanged, only changed values are rewritten
+        rows : rows of values; if the table keeps its shape, only changed values are rewritten
         """
         old = self.value(location)
         if not isinstance(old, dict) or set(old) != {"columns", "rows"}:
@@ -343,7 +328,7 @@ class History:
 
     Parameters
     ----------
-    draft : the draft that is in the file at the start
+    draft : initial draft, which equals the saved file
     """
 
     def __init__(self, draft: Draft) -> None:
@@ -364,10 +349,7 @@ class History:
         return tuple(label for label, _ in reversed(self._done))
 
     def do(self, draft: Draft, label: str) -> None:
-        """Make a draft the current one; `label` names this step, which can be undone.
-
-        No step is added if the draft equals the current draft.
-        """
+        """Make a draft the current one, unless the two are equal; `label` names the step."""
         if draft.text == self.draft.text:
             return
         self._done.append((label, self.draft.text))

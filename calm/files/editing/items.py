@@ -1,8 +1,4 @@
-"""Cut, copy, insert and move the items of YAML lists and mappings as text.
-
-The items of a mapping are its entries. Items of a list can also be copied to a separate text and
-pasted from it.
-"""
+"""Cut, copy, insert and move items of YAML lists, and entries of YAML mappings, as text."""
 
 from __future__ import annotations
 
@@ -25,13 +21,13 @@ _LINE_BREAK = re.compile(r"\r\n|\n")
 
 @dataclass(frozen=True)
 class LineLists:
-    """Locations of the lists of line items: a single list, or one list per leg of a net.
+    """Locations of the lists of line items: one list, or one list per leg of a net.
 
     A line index counts the items of all lists, in file order.
 
     Attributes
     ----------
-    all : location and number of items of each list
+    all : location of each list, and its number of items
     """
 
     all: tuple[tuple[Location, int], ...]
@@ -68,8 +64,8 @@ class LineLists:
     def place(self, index: int, *, above: bool) -> tuple[Location, int]:
         """Convert a line index to the location of a list and an index in this list.
 
-        At an index between two legs, the result is the start of the lower leg if `above` is true,
-        and otherwise the end of the upper leg.
+        An index between two legs means the start of the lower leg if `above`, else the end of the
+        upper leg.
         """
         for rows, count in self.all[:-1]:
             if index < count or (index == count and not above):
@@ -80,8 +76,7 @@ class LineLists:
     def place_in(self, rows: Location, index: int, *, above: bool) -> tuple[Location, int]:
         """Return the location of the list that contains an item, and the index in this list.
 
-        If `rows` is `LINE`, `index` is a line index. Otherwise, `index` is already the index in the
-        list at `rows`.
+        The given index is a line index if `rows` is `LINE`, else an index in the list at `rows`.
         """
         return self.place(index, above=above) if rows == LINE else (self.real(rows), index)
 
@@ -103,12 +98,10 @@ class LineItem:
 
     Attributes
     ----------
-    line, column : line and column of the item in the text, counted from 1; the pieces that the item
-        produces have the same line and column
-    values : keys and their plain values, as written; a key without a value has an empty text. The
-        mapping `length_at` becomes a text such as `480 m at 2 kN`
-    clamps : clamps of the item
-    text : lines of the item in the file, including the comments that belong to it
+    line, column : position in the text, from 1, which is also that of the resulting pieces
+    values : keys and plain values as written; empty text for a key without a value, and text such
+        as `480 m at 2 kN` for `length_at`
+    text : lines of the item in the file, with its comments
     """
 
     line: int
@@ -123,7 +116,6 @@ def item_of(node: Node, text: str, *, lines: str = "") -> LineItem:
 
     Parameters
     ----------
-    node : node of the item
     text : text that contains the node
     lines : text of the item with its comments; if empty, the text of the node
     """
@@ -143,12 +135,9 @@ def item_of(node: Node, text: str, *, lines: str = "") -> LineItem:
 
 
 def snippet_of(text: str, column: int) -> str:
-    """Convert the text of an item to a block list of this item only, starting in column 1.
+    """Convert the text of an item to a block list with this item only, starting in column 1.
 
-    Parameters
-    ----------
-    text : text of the item
-    column : column of the dash of the item, from 1; 0 for an item in brackets
+    `column` is the column of the item's dash, from 1; 0 for an item in brackets.
     """
     text = _LINE_BREAK.sub("\n", text)
     if not column:
@@ -176,16 +165,14 @@ class Items:
 
     Attributes
     ----------
-    start, end : span of the collection in the text, which `patch` replaces
+    start, end : span of the collection in the text
     is_flow : whether the collection is in brackets
-    column : column of the dashes, or of the keys of a mapping, counted from 1
-    texts : text of each item: the lines of the item and its comments; in brackets, the text between
-        two commas
-    gaps : for each item, the text before the item that belongs to no item, such as a less indented
-        comment
+    column : column of the dashes or keys, from 1
+    texts : lines of each item with its comments; in brackets, the text between two commas
+    gaps : text before each item that belongs to no item
     rest : text after the last item
     separator : text between two items in brackets
-    on_a_dash : whether the first entry of the mapping is on the line of a dash or of a `?`
+    on_a_dash : whether the first entry of a mapping follows a dash or a `?` on its line
     """
 
     start: int
@@ -222,7 +209,7 @@ class Items:
 
 
 def items_of(text: str, node: Node) -> Items | None:
-    """Divide a collection into items; return None if the collection shares lines with other text.
+    """Divide a collection into items; return None if other text is on the same lines.
 
     The text must end with a line break.
     """

@@ -49,14 +49,9 @@ _MOST_RECENT = 40
 
 
 class Remembered:
-    """Ids of favourite and recently used components, latest first, kept between sessions.
+    """Ids of favourite and recently used components, kept between sessions, latest first.
 
-    Both lists are empty if the file in which they are saved cannot be read.
-
-    Attributes
-    ----------
-    favourites : ids marked by the user
-    recent : ids recently chosen from the catalogue
+    The lists are empty if their file cannot be read.
     """
 
     def __init__(self) -> None:
@@ -69,7 +64,7 @@ class Remembered:
         self.favourites, self.recent = ids
 
     def take(self, id: str) -> None:
-        """Record the choice of a component for this session, without saving the choice."""
+        """Record the choice of a component, without an error if the choice cannot be saved."""
         self.recent = [id, *(each for each in self.recent if each != id)][:_MOST_RECENT]
         with suppress(OSError):
             self._keep()

@@ -1,7 +1,6 @@
 """The file that a user is editing, and backup copies of its unsaved text.
 
-The first line of a copy is a comment with the host, the process, and a digest of the file when the
-work began. The text follows below. Each session uses its own file name for the copy.
+The first line of a backup copy is a comment with host, process and a digest of the original file.
 """
 
 from __future__ import annotations
@@ -36,16 +35,9 @@ class NotWritten(CalmError):
 class WorkingFile:
     """A mooring file that is being edited, and the backup copy of its unsaved text.
 
-    The copy belongs to this session. Backup copies of other sessions are read, but are removed only
-    after the user has adopted or discarded the work in them.
-
-    Parameters
-    ----------
-    path : path of the file; None if the file has no name yet. The backup copy is in the user's
-        state folder (`XDG_STATE_HOME`) if the file has no name or its folder cannot be written
-
     Attributes
     ----------
+    path : path of the file; None if the file has no name yet
     unsaved : the text that `keep` saves; None if nothing is unsaved
     """
 
@@ -78,9 +70,9 @@ class WorkingFile:
         return text
 
     def save(self, text: str) -> str:
-        """Write the file. Other programs see the complete old text or the complete new text.
+        """Write the file, so that other programs never see a partly written text.
 
-        The permissions of the file are kept. A symbolic link still points to the same file.
+        Permissions and symbolic links are kept.
 
         Returns
         -------
@@ -90,7 +82,7 @@ class WorkingFile:
         Raises
         ------
         NotWritten
-            The file cannot be written; the message gives the reason.
+            The file cannot be written.
         """
         assert self.path is not None
         content = text.encode()
@@ -134,8 +126,7 @@ class WorkingFile:
     def keep(self) -> Path | None:
         """Write `unsaved` to the backup copy and return the path of the copy.
 
-        If nothing is unsaved, the copy of this session is removed and the result is None. Any
-        thread may call this method.
+        If nothing is unsaved, remove the copy and return None. This method is thread-safe.
 
         Raises
         ------
@@ -156,9 +147,9 @@ class WorkingFile:
             self._adopted = None
 
     def recoverable_work(self) -> KeptWork | None:
-        """Return the latest unsaved work left by a session that has ended.
+        """Return the latest unsaved work left by a session that has ended, or None.
 
-        Work that equals the file is ignored. Return None if no work remains.
+        Work that equals the file is ignored, and its copy on this machine is deleted.
         """
         content = self._content()
         found = []
@@ -185,7 +176,7 @@ class WorkingFile:
     def adopt(self, kept: KeptWork) -> None:
         """Continue with recovered work, whose copy is deleted when the work is saved or discarded.
 
-        If the file has changed since the recovered work began, `changed_on_disk` returns True.
+        If the file has changed since the work began, `changed_on_disk` returns True.
         """
         self._adopted = kept.place
         if self.is_of_another(kept):
@@ -302,9 +293,10 @@ class Keeper:
 
     @property
     def is_running(self) -> bool:
-        """Whether the process is known to be running; False for a process on another machine.
+        """Whether the process is known to be running.
 
-        The result is also False in a web browser, where successive sessions share one process.
+        False for a process on another machine, and in a web browser, where sessions share one
+        process.
         """
         if not self.is_here or os.name != "posix" or sys.platform == "emscripten":
             return False
@@ -325,9 +317,8 @@ class KeptWork:
     Attributes
     ----------
     place : path of the copy
-    text : text of the mooring file
     keeper : process that wrote the copy
-    base : digest of the content that the file had when the work began
+    base : digest of the file when the work began
     at : time of the copy [s since 1970]
     """
 

@@ -1,8 +1,6 @@
-"""Write values as YAML in the style of a file, with keys in the order of the models.
+"""Write values as YAML in the style of an existing file.
 
-Text is written without quotes if it can be read back without them. No YAML library writes a whole
-file, because the file would lose part of its layout, such as aligned columns and Windows line ends.
-Even ruamel.yaml, which preserves most comments, does not preserve all of the layout.
+Keys have the order of the models. Text gets quotes only if YAML would otherwise misread it.
 """
 
 from __future__ import annotations
@@ -19,6 +17,8 @@ from calm.files.mooring_file import Solver
 from calm.files.reader import MooringKeys
 from calm.files.water import TableKeys
 
+# No YAML library writes the file, because aligned columns and Windows line ends would be lost.
+
 # Words that YAML, or other programs that read it, interpret as something else.
 _WORD = re.compile(r"(?:~|=|<<|null|true|false|yes|no|on|off)?", re.IGNORECASE)
 
@@ -34,13 +34,12 @@ Value = str | None | Mapping[str, "Value"] | Sequence["Value"]
 
 
 class Wording(NamedTuple):
-    """A list item with its text in both YAML styles.
+    """A list item with its text in block style and in flow style.
 
     Attributes
     ----------
-    value : value of the item
-    lines : lines of the item, with its comments, in a block list that starts in column 1
-    inline : text of the item in flow style, without comments
+    lines : lines of the item and its comments in a block list, from column 1
+    inline : text in flow style, without comments
     """
 
     value: Value
@@ -78,13 +77,12 @@ _LAST = "clamps"
 
 @dataclass(frozen=True)
 class WritingStyle:
-    """The style of a file: line breaks and indentation.
+    """Line breaks and indentation of a YAML file.
 
     Attributes
     ----------
-    line_break : line break of the file
-    step : number of columns by which a nested mapping is indented from its key
-    dash : number of columns by which the dashes of a list are indented from its key
+    step : indentation of a nested mapping from its key [columns]
+    dash : indentation of the dashes of a list from its key [columns]
     """
 
     line_break: str = "\n"
@@ -112,24 +110,17 @@ class WritingStyle:
 
         Parameters
         ----------
-        name : the key
-        value : the value
         column : column of the key, from 1
-        open : whether a mapping is written below its key even if it is short
+        open : whether even a short mapping is written on separate lines
         """
         key = " " * (column - 1) + written(name, flow=False) + ":"
         head, below = self.parts(name, value, column, open=open)
         return key + head + self.line_break + below
 
     def parts(self, name: str, value: Value, column: int, *, open: bool = False) -> tuple[str, str]:
-        """Return the text to write after the colon of a key, and the lines to write below the key.
+        """Return the text after the colon of a key, and the lines below the key.
 
-        Parameters
-        ----------
-        name : the key
-        value : the value
-        column : column of the key, from 1
-        open : as in `entry`
+        Parameters are those of `entry`.
         """
         if value is None:
             return "", ""
@@ -158,9 +149,8 @@ class WritingStyle:
 
         Parameters
         ----------
-        value : value of the item
         column : column of the dash, from 1
-        block : whether each key gets its own line, as in every value that contains collections
+        block : whether each key gets its own line even in a short item
         """
         indent = " " * (column - 1)
         if isinstance(value, Mapping) and value and (block or _is_deep(value)):
@@ -194,9 +184,9 @@ def read_inline(text: str) -> Value:
 
 
 def place_of(name: str, names: Sequence[str]) -> int:
-    """Return the index at which to insert the key `name` among the existing keys `names`.
+    """Return the index at which to insert a new key among the existing keys `names`.
 
-    Keys of the file format are inserted in the order of the format, and other keys at the end.
+    Keys of the file format are inserted in the order of the format, other keys at the end.
     """
     order = next((one for one in _ORDERS if name in one), ())
     if name in order:
@@ -236,9 +226,8 @@ def written(text: str, *, flow: bool, quote: str = "") -> str:
 
     Parameters
     ----------
-    text : the text
-    flow : whether the scalar is in a flow collection, where commas and brackets end a plain scalar
-    quote : current quotation mark, which is kept if possible; empty if there is none
+    flow : whether the scalar is inside brackets, where a comma ends unquoted text
+    quote : preferred quotation mark, or ""
     """
     if quote == "'" and text.isprintable():
         return "'" + text.replace("'", "''") + "'"
@@ -298,14 +287,13 @@ def first_on_line(text: str, place: int) -> bool:
 
 
 def own_end(text: str, place: int, column: int) -> int:
-    """Return the index at which an item ends, including the comments that belong to the item.
+    """Return the index at which an item ends, including its comments.
 
     Parameters
     ----------
     text : the text, which ends with a line break
     place : index at which the value of the item ends
-    column : column of the item, counted from 1; comments below the item belong to it if they start
-        to the right of this column
+    column : column of the item, from 1; comments to the right of it belong to the item
     """
     end = line_end(text, place)
     while (comment := _COMMENT.match(text, end)) and end < len(text):
@@ -316,15 +304,14 @@ def own_end(text: str, place: int, column: int) -> int:
 
 
 def own_start(text: str, place: int, least: int, column: int | None = None) -> int:
-    """Return the index at which an item begins, including the comments that belong to the item.
+    """Return the index at which an item begins, including the comments above it.
 
     Parameters
     ----------
     text : the text, which ends with a line break
-    place : index at which the item begins; the item is the first on its line
-    least : comments before this index do not belong to the item
-    column : comments to the right of this column, counted from 1, do not belong to the item; None
-        means no such limit
+    place : index of the item, which is the first on its line
+    least : smallest index that may be returned
+    column : largest column of a comment of the item, from 1; None for any column
     """
     start = line_start(text, place)
     while start > least:
@@ -350,11 +337,8 @@ def set_value(
     Parameters
     ----------
     text : the text, which ends with a line break
-    mapping : the mapping that contains the key
     at : index of the key in the mapping
-    value : the new value
-    style : style of the file
-    open : whether a mapping is written below its key even if it is short
+    open : whether even a short mapping is written on separate lines
     """
     key, old = mapping.keys[at], mapping.children[at]
     if isinstance(value, str) and old.kind == "scalar" and old.data is not None:
@@ -381,11 +365,7 @@ def set_value(
 def set_scalar(old: Node, value: str, *, flow: bool) -> Patch:
     """Return the patch that replaces the text of a scalar and keeps its quotation marks.
 
-    Parameters
-    ----------
-    old : node of the scalar
-    value : the new text
-    flow : whether the scalar is in a flow collection
+    `flow` is true for a scalar inside brackets.
     """
     quote = old.style if old.style in "'\"" else ""
     return Patch(old.start, old.end, written(value, flow=flow, quote=quote))
