@@ -1,7 +1,6 @@
 """The design check: each leg in each environment, then launch, recovery, breaks and composition.
 
-Waves, launch and recovery are solved and checked for a single line only; breaks are checked for
-nets, too.
+For a net of legs, waves, launch and recovery are not checked.
 """
 
 from collections.abc import Sequence
@@ -70,10 +69,9 @@ def check(*designs: Design, day: date | None = None) -> Assessment:
 def environments_checked(
     design: Design, name: str, day: date | None = None
 ) -> list[MooringInEnvironment]:
-    """Solve a design in its environment in all situations, and apply the rules to each leg.
+    """Apply the rules to each leg of a design, in all situations of its environment.
 
-    The result has one entry per leg. For a design without an equilibrium, it has a single entry,
-    which contains the reason.
+    The result has one entry per leg, or a single entry for a design without an equilibrium.
 
     Parameters
     ----------
@@ -107,8 +105,6 @@ def assessment_of(
     name: str, in_environments: Sequence[MooringInEnvironment], day: date | None = None
 ) -> Assessment:
     """Check composition, breaks, launch and recovery of a design, and build its assessment.
-
-    For a net, launch and recovery are not checked.
 
     Parameters
     ----------
