@@ -136,7 +136,7 @@ def swivel(handling: Handling) -> Iterator[Verdict]:
     """Check that a swivel separates each wire that is not torque-balanced from a float at its end.
 
     Such a wire twists as its load changes, and kinks if a float resists the rotation. A swivel at
-    either end suffices. An end at a chain or rope needs no swivel.
+    either end suffices. An end at a chain or rope needs none.
     """
     pieces = handling.leg.file.pieces
     for index, piece in enumerate(pieces):
@@ -277,7 +277,7 @@ _HOLDS = "Use a stronger clamp, a second clamp, or a stopper below it."
 
 @rule("clamp-grip")
 def clamp_grip(result: LegResult) -> Iterator[Verdict]:
-    """Check the grip of each clamp against the weight and drag of the clamped item in the current."""
+    """Check the grip of each clamp against weight and drag of the clamped item in the current."""
     water, depth = result.leg.water, np.asarray(result.clamps.depth)
     flows, densities = water.current_at(depth), water.density_at(depth).tolist()
     for part in _clamps(result.leg):
@@ -293,9 +293,8 @@ def clamp_grip(result: LegResult) -> Iterator[Verdict]:
 def clamp_grip_in_transit(handling: Handling) -> Iterator[Verdict]:
     """Check the grip of each clamp against the axial force during launch and recovery.
 
-    The force [N] results from the submerged weight of the clamped item and its drag in flow along
-    the line. The flow has the largest touchdown speed of the anchor, or the terminal rise speed of
-    the line.
+    The force [N] is the submerged weight of the clamped item, and its drag in flow along the line
+    at the largest touchdown speed of the anchor or at the rise speed of the line.
     """
     launch, rise = handling.launch, None if is_hauled_in(handling) else handling.recovery
     deep = np.array(handling.leg.water.depth)
@@ -326,8 +325,8 @@ Source: McLane Moored Profiler, user manual.
 def profiler(result: LegResult) -> Iterator[Verdict]:
     """Check the tension, wire, path and drive force of each profiler at its current position.
 
-    The flow along the wire past the profiler is at most the profiler speed plus the current × sine
-    of the tilt. Wheel friction and compression of the profiler are neglected.
+    The flow along the wire past the profiler is at most the profiler speed plus current ×
+    sin(tilt). Wheel friction and compression of the profiler are neglected.
     """
     for row in result.clamps:
         if isinstance(row.part.component, Profiler):

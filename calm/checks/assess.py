@@ -269,7 +269,7 @@ def findings_of(
 
     Parameters
     ----------
-    mooring, environment : names of the mooring and the environment in the findings
+    mooring, environment : names in the findings
     day : date on which acceptances must be valid; today by default
     """
     if situation.failure is not None:

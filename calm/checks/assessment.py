@@ -68,7 +68,7 @@ class MooringInEnvironment:
     findings : all findings for the unchanged mooring, and more severe findings for other situations
     tighter : findings for other situations with a larger utilisation than in `findings`
     accepted : accepted findings for all situations
-    lacking : findings that lack a component value, for all situations; not in `findings`
+    lacking : findings for all situations that lack a component value; not in `findings`
     """
 
     environment: str
@@ -100,7 +100,7 @@ class Assessment:
     findings : findings of the rules that are not evaluated in each environment
     limits : limits applied to the mooring
     notices : messages for the user, such as those about expired acceptances
-    draws : number of samples and random seed for probabilities; None without probabilities
+    draws : number of samples and random seed for probabilities, if any
     """
 
     name: str
@@ -178,7 +178,7 @@ class Handling:
     """Input of the rules that are evaluated once per mooring.
 
     `launch` and `recovery` are solutions, or the reason why there is no solution. `backup` and
-    `losses` are results for breaks and lost floats. `result` is the equilibrium, if any.
+    `losses` are results for breaks and lost floats.
     """
 
     leg: Leg
@@ -236,8 +236,8 @@ class Acceptance:
     def _estimated(self, finding: Finding) -> Finding:
         """Change the state of a finding that relies on the lower bound of an estimate.
 
-        A pass becomes estimated, and a failure becomes unknown. If a specified value sets the
-        limit, a failure remains a failure.
+        A pass becomes estimated, and a failure becomes unknown. A failure remains if a specified
+        value sets the limit.
         """
         part, figures = self.parts.get(finding.component or ""), RULES[finding.rule].figures
         if part is None or not figures or finding.state not in (State.PASS, State.FAIL):

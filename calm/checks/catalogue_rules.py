@@ -41,9 +41,9 @@ The factor allows an error of 1.7 % in a sphere's diameter.
 """
 
 ROPE_ROUNDING = 1.12
-"""Factor as `ROUNDING`, but for ropes.
+"""Factor by which rounded values of a rope may exceed a limit.
 
-The nominal diameter of a rope may be one size below the true diameter.
+The factor exceeds `ROUNDING`: a nominal diameter may be one size below the true diameter.
 """
 
 NOMINAL = 1.25

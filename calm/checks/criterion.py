@@ -1,7 +1,7 @@
-"""Criteria: upper or lower limits on a quantity of a part of the line.
+"""Criteria: upper or lower limits on a quantity of a piece or clamp, or of the whole line.
 
 The design check evaluates a criterion for one result. Batch statistics count the profiles that
-violate it.
+violate a criterion.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -32,7 +32,7 @@ class JudgedPart:
     ----------
     label, place : label and place in the file, both unique within the line
     index : index of the piece, or of the piece that carries the clamp, from the top
-    clamp : index among all clamps of the line, as in the results; None for a piece
+    clamp : index among all clamps of the line; None for a piece
     """
 
     label: str
@@ -72,15 +72,14 @@ class Criterion:
     part : piece or clamp to check; for the whole line, the top piece or the anchor
     quantity : a key of `READINGS`
     limit : limit in SI units or degrees; None if the component lacks a value for the limit
-    words : function that takes the value (NaN if unknown) and the result, and returns message and
-        remedy
+    words : function of the value (NaN if unknown) and the result that returns message and remedy
     least : whether the limit is a lower limit
     beyond : state if the value violates the limit
-    silent : whether the criterion does not apply if the value is NaN; otherwise NaN is unknown
+    silent : whether the criterion does not apply if the value is NaN; otherwise, NaN means unknown
     source, figure : as in `Verdict`
     lacks : key of the missing component value, if `limit` is None
-    stated : function that takes the value and the result, and returns value and limit of a more
-        customary quantity for display
+    stated : function of the value and the result that returns value and limit of a more customary
+        quantity for display
     stated_least : whether the displayed limit is a lower limit
     """
 
@@ -195,14 +194,9 @@ READINGS: dict[str, Callable[[LegResult, JudgedPart], float]] = {
 def limits_used(file: MooringFile, surface: bool) -> tuple[LimitKey, ...]:
     """Return every limit that the design check applies to a mooring.
 
-    Values and settings that make the check more lenient are included, such as a load rating above
-    the rating in the catalogue. The friction coefficient of the anchor, if specified, replaces
-    `anchor_friction`.
-
-    Parameters
-    ----------
-    surface : whether the mooring is a surface mooring, for which the minimum top depth has no
-        default
+    All values and settings that make the check more lenient are included, such as a load rating
+    above that of the catalogue. A friction coefficient of the anchor replaces `anchor_friction`.
+    For a surface mooring (`surface`), the minimum top depth has no default.
     """
     given = file.checks.minimum_top_depth is not None
     used = (

@@ -75,7 +75,7 @@ def environments_checked(
 
     Parameters
     ----------
-    name : name of the design in its findings
+    name : name in the findings
     day : date on which acceptances must be valid; today by default
     """
     environment = design.environment.name or OWN

@@ -165,7 +165,7 @@ class Verdict:
     remedy : suggested change, if any
     source : source of the limit; "" for the source of the rule
     lacks : missing component value that the rule requires, if any
-    missing : missing value with all rules and pieces that need it; only for the rule `missing`
+    missing : missing value and everything that needs it; for the rule `missing` only
     case : code of the load case; None for the code of the environment and situation
     figure : key of the component value that sets the limit, if several values could
     """
@@ -201,8 +201,8 @@ class Verdict:
     def utilisation(self) -> float | None:
         """Ratio of demand to capacity; above 1 if the limit is exceeded.
 
-        The ratio is value / limit for an upper limit, and limit / value for a lower limit. The
-        ratio is infinite without capacity, and None if the limit is missing or 0.
+        This is value / limit for an upper limit, and limit / value for a lower limit. The ratio is
+        infinite without capacity, and None if the limit is missing or 0.
         """
         if self.margin is None or not self.limit or self.value is None:
             return None
@@ -270,10 +270,8 @@ def unknown(
 ) -> Verdict:
     """Create a verdict with the state unknown, for a rule that cannot be evaluated.
 
-    Parameters
-    ----------
-    lacks : key of the missing component value, if any
-    of : piece or clamp that lacks the value; by default `part`
+    `lacks` is the key of the missing component value, if any. `of` is the piece or clamp that lacks
+    the value, by default `part`.
     """
     lacking = of or part
     lack = Lack(lacking.label, lacks) if lacks and lacking is not None else None
@@ -312,7 +310,7 @@ class Rule:
         environment and situation
     situation, case : situation and load case of a rule with `once`; the codes are L launch, R rise,
         B break, 0 still water
-    counted : function that replaces `judge` when random samples are counted
+    counted : function used instead of `judge` to count random samples that exceed limits
     """
 
     name: str
@@ -375,7 +373,7 @@ class Finding(Verdict):
     situation : name of the change to the design; `AS_GIVEN` for the unchanged design
     accept : entry in the file that accepts the finding, if any
     unaccepted : state without `accept`, for an accepted finding
-    probability : probability that the limit is exceeded, if computed
+    probability : probability that the limit is exceeded
     estimates : estimates on which the finding relies
     """
 
@@ -450,8 +448,8 @@ def worst_of(findings: Iterable[Finding]) -> Finding:
     """Return the most severe finding.
 
     Of equally severe findings, the finding with the largest utilisation is returned. Without
-    utilisations, the finding with the smallest margin is returned. A finding that is not judged is
-    returned only if there is no other finding.
+    utilisations, the smallest margin decides. A finding that is not judged counts only without
+    others.
     """
     found = [*findings]
     judged = [one for one in found if one.state is not State.NOT_JUDGED]
@@ -479,9 +477,9 @@ def governing(findings: Iterable[Finding]) -> Finding:
 def reported_findings(findings: Iterable[Finding]) -> tuple[Finding, ...]:
     """Select the one or two findings of a rule to be reported.
 
-    The governing finding is reported first. A more severe finding follows, if there is one. An
-    accepted or estimated finding follows only if the governing finding passes. If no finding has a
-    utilisation, only the most severe finding is reported.
+    The governing finding is reported, followed by the most severe finding if it is more severe. An
+    accepted or estimated finding follows only a governing finding that passes. Without
+    utilisations, only the most severe finding is reported.
     """
     found = [*findings]
     lead, worst = governing(found), worst_of(found)

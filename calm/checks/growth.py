@@ -2,8 +2,7 @@
 
 Biofouling is a layer of uniform thickness on everything above a given depth in still water. The
 layer increases the diameter of a cable, and the projected areas of a rigid piece. A body without
-dimensions is treated as a sphere with the same projected area. A layer without a specified density
-is weightless in water.
+dimensions is treated as a sphere. A layer without a specified density is weightless in water.
 """
 
 from collections.abc import Iterator, Sequence
@@ -22,7 +21,10 @@ from calm.physics import drag
 from calm.physics.seawater import REFERENCE_DENSITY
 
 CHAIN_BREADTH = 1.8
-"""Diameter of a cylinder with the displacement of a chain, divided by the bar diameter (OrcaFlex)."""
+"""Ratio of a chain's equivalent diameter to its bar diameter (OrcaFlex).
+
+A cylinder of the equivalent diameter has the displacement of the chain.
+"""
 
 
 def grown(
@@ -31,10 +33,7 @@ def grown(
     """Return the pieces with biofouling on everything above `fouling.depth` in still water.
 
     A cable or chain that crosses this depth is split there, and its two pieces keep the label.
-
-    Parameters
-    ----------
-    given : result for the line without biofouling, which supplies the depths
+    `given` is the result without biofouling, which supplies the depths.
     """
     gravity = given.leg.water.gravity
     return tuple(

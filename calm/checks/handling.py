@@ -41,10 +41,8 @@ def is_hauled_in(handling: Handling) -> bool:
 def backup(handling: Handling) -> Iterator[Verdict]:
     """Check the net buoyancy that lifts the release after a break or the loss of a float.
 
-    The line may break at any connection above the back-up floats, or lose any single buoyant
-    element. The remaining net buoyancy must be at least `backup_margin` × the lifted weight, and
-    sufficient for a rise at `minimum_rise_speed`. A compact line below a single float is not
-    judged.
+    The remaining net buoyancy must be at least `backup_margin` × the lifted weight, and sufficient
+    for a rise at `minimum_rise_speed`. A compact line below a single float is not judged.
     """
     if handling.leg.file.release is None:
         if is_hauled_in(handling):

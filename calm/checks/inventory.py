@@ -14,6 +14,8 @@ from calm.physics.materials import CONCRETE_DENSITY, STEEL_DENSITY
 class InventoryItem:
     """Piece of the line, or instrument clamped on a piece.
 
+    A mass or weight is None if unknown.
+
     Attributes
     ----------
     index : index of the piece, or of the piece that carries the clamp
@@ -22,11 +24,10 @@ class InventoryItem:
         upper end of that piece [m]; None for a piece
     cut_length : length along the line [m]; None for a fitted cable that cannot reach its target
         depth
-    dry_mass : mass in air [kg]; None if unknown
-    wet_weight : weight in water of 1025 kg/m³, positive down [N]; None if the length is unknown
-    items : number of equal components in this item, such as 2 for a pair of releases
-    lift_mass : mass in air of a piece with its clamps [kg]; None for a clamp, or if a mass is
-        unknown
+    dry_mass : mass in air [kg]
+    wet_weight : weight in water of 1025 kg/m³, positive down [N]
+    items : number of equal components, such as 2 for a pair of releases
+    lift_mass : mass in air of a piece with its clamps [kg]; None for a clamp
     """
 
     index: int

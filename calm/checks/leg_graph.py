@@ -44,7 +44,7 @@ class Break:
     weight_lifted : weight in water of the non-buoyant pieces in this section [N]
     required : required margin [N]
     judged : False for a break that strands the release in any design
-    loose : net buoyancy of the section that drifts off before the releases open, positive up [N]
+    loose : net buoyancy of the section that drifts off before the releases open [N]
     """
 
     break_after: int
@@ -58,7 +58,7 @@ class Break:
 
 @dataclass(frozen=True)
 class Loss:
-    """Loss of one buoyant element, such as a flooded glass ball, while the line stays intact.
+    """Loss of one buoyant element, such as a flooded glass ball, from an intact line.
 
     Attributes
     ----------
@@ -80,8 +80,7 @@ class Loss:
 class LegGraph:
     """Graph of the connections between the pieces, nodes and fixed ends of a design.
 
-    Pieces are identified by their index in the file. In each leg of a net, only the lowest release
-    opens.
+    In each leg of a net, only the lowest release opens.
 
     Parameters
     ----------
@@ -179,11 +178,8 @@ class LegGraph:
         - breaks between this cluster and the release, up to a distance of `SHORT_LEAD`.
 
         Floats with only connectors and chain between them form a cluster. If no break remains to be
-        judged, chain divides clusters.
-
-        Parameters
-        ----------
-        whole : all pieces of the design as one leg, which supplies the limits of the check
+        judged, chain divides clusters. `whole` contains all pieces as one leg, and supplies the
+        limits.
         """
         rising = {one for part in self._rising_parts(()) for one in part}
         before = {one for part in self._free_parts(()) for one in part}
@@ -249,13 +245,9 @@ class LegGraph:
     def losses(self, whole: Leg) -> tuple[Loss, ...]:
         """Return the effect of losing each buoyant piece or clamp that surfaces, one at a time.
 
-        A lost element provides no buoyancy. Its weight in water counts if its mass and the density
-        of its material are known. Cables are never lost.
-
-        Parameters
-        ----------
-        whole : all pieces of the design as one leg, which supplies gravity and the limits of the
-            check
+        A lost element is assumed to be flooded if its mass and the density of its material are
+        known, and otherwise to be gone. Cables are never lost. `whole` contains all pieces of the
+        design as one leg, and supplies gravity and the limits of the check.
         """
         return tuple(
             loss for part in self._rising_parts(()) for loss in self._losses_of(part, whole)

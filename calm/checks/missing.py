@@ -55,7 +55,7 @@ def missing(lacking: Mapping[tuple[str, str], Sequence[Finding]]) -> Iterator[Ve
 def is_lacking(finding: Finding) -> bool:
     """Return whether a finding is unknown because a value is missing.
 
-    An accepted finding is not unknown.
+    Accepted findings do not count.
     """
     return finding.state is State.UNKNOWN and finding.lacks is not None
 

@@ -135,7 +135,7 @@ def _amount(least: float, most: float) -> str:
 
 
 def _remedy(result: LegResult, parts: Sequence[PlannedPart], number: int) -> str:
-    """Name the lengths to check for a piece or clamp that is off its planned depth.
+    """Name the lengths to check for a part that is off its planned depth.
 
     The error lies between the last part with the same depth error and the next part with a
     different error, towards the fixed end.

@@ -352,8 +352,8 @@ def watch_circle(result: LegResult) -> Iterator[Verdict]:
     """Check the watch-circle radius √(L² - h²) of a surface float.
 
     L is the line length from the float to the anchor, and h is the height of the surface above the
-    top of the anchor. The limit is `maximum_excursion`, if the design sets it. Without a limit, the
-    radius is only reported. PacIOOS states a radius of 1.73 times the depth at a scope of 2.
+    top of the anchor. The limit is `maximum_excursion`, if the design sets it. PacIOOS states a
+    radius of 1.73 times the depth at a scope of 2.
     """
     limit = result.file.checks.maximum_excursion
     if not reaches_the_surface(result.leg):

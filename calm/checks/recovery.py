@@ -34,16 +34,15 @@ class Recovery:
     ----------
     released : index of the lowest piece that rises: the lowest release, or the piece above the
         anchor
-    rise_speed : terminal speed of the rising line, positive up [m/s]; 0 if the line does not rise
+    rise_speed : terminal speed, positive up [m/s]; 0 if the line does not rise
     net_buoyancy : net buoyancy of the rising line at the equilibrium depths [N]
     time_to_surface : time until the first buoyant piece surfaces [s]; None if no piece surfaces
-    tension_top, tension_bottom : (n,) tensions during the rise of the pieces above the anchor [N];
-        NaN for pieces that do not rise
+    tension_top, tension_bottom : (n,) tensions of the pieces above the anchor [N]; NaN for pieces
+        that do not rise
     arrival : (n,) time at which each piece surfaces [s]; NaN for a piece that stays below
     order : indices of pieces that are buoyant enough to surface alone, in order of surfacing
-    tangles : indices of pieces that overtake pieces above them in the line
-    in_still_water : whether the rise was computed in still water, because no steady motion exists
-        in the current
+    tangles : indices of pieces that overtake pieces above them
+    in_still_water : whether the rise was computed in still water, without a solution in the current
     length : (m,) stretched lengths of the rising pieces [m]; empty if the line does not rise
     seabed : water depth [m]; NaN if the line does not rise
     """
@@ -69,10 +68,8 @@ class Recovery:
     def depth_at(self, piece: int, share: float) -> float:
         """Return the depth of a point on a piece at the end of the rise [m]; NaN if unknown.
 
-        Parameters
-        ----------
-        piece : index of the piece
-        share : distance of the point from the upper end, as a fraction of the length of the piece
+        `share` is the distance of the point from the upper end, as a fraction of the length of the
+        piece.
         """
         up = np.isfinite(self.arrival[: len(self.length)])
         if piece >= len(up):
@@ -99,9 +96,7 @@ class Recovery:
 def recovery_of(leg: Leg, result: LegResult) -> Recovery:
     """Compute the rise of a mooring after its release, starting from its equilibrium.
 
-    Parameters
-    ----------
-    result : result for the leg, which supplies depths and stretched lengths
+    `result` supplies the depths and stretched lengths in equilibrium.
 
     Raises
     ------

@@ -48,7 +48,7 @@ _AT_STOP, _AT_LEAN = "at its lower stop", "at its largest wire angle"
 def case_of(environment: int, situation: str) -> str:
     """Return the code of a load case, such as ``2s`` for strumming in the second environment.
 
-    Codes are the number of the environment and a suffix:
+    Codes are the number of the environment (from 1, in file order) and a suffix:
 
     - none: the unchanged mooring
     - s, g: strumming, growth (biofouling)
@@ -57,11 +57,6 @@ def case_of(environment: int, situation: str) -> str:
     - p, q: profiler at its lower stop, or at the maximum wire angle
 
     Still water has the code 0, and still low water 0l.
-
-    Parameters
-    ----------
-    environment : number of the environment in file order, from 1
-    situation : name of the situation
     """
     if situation in (STILL, STILL_LOW):
         return "0" if situation == STILL else "0l"
@@ -218,7 +213,7 @@ def as_deployed(design: Design) -> Design:
 
 
 def _deployed_file(file: MooringFile) -> MooringFile:
-    """Replace the values of a file with those under `deployed`; no piece may be cut to fit."""
+    """Replace the values of a file with those under `deployed`; the file has no fitted piece."""
     deployed = file.deployed
     assert deployed is not None
     items = {item.label: item for item in deployed.items}

@@ -39,8 +39,8 @@ def governing_load(
     """Return the allowable load [N], and the key of the load rating that governs it.
 
     The allowable load is the smaller of working load × `working_factor` and breaking load /
-    `factor`. The working load of a synthetic rope counts only without a breaking load. The result
-    is None and "" without any load rating.
+    `factor`. The working load of a synthetic rope counts only without a breaking load. Without any
+    load rating, the result is None and "".
     """
     known, working = [], counted_working_load(component)
     if working is not None:
@@ -258,10 +258,10 @@ def _steps(
 def slack(leg: Leg) -> Iterator[Criterion]:
     """Check the minimum tension in each wire and rope above the release.
 
-    Without a release, the whole line is checked. No published rule exists. Mooring groups require
-    about 500 to 1000 N above the release at slack water; the defaults are 500 N for wire and 300 N
-    for rope. Pieces with ``slack: allowed`` and line on the seabed are exempt. If the line above
-    the release is shorter than `SHORT_LEAD`, the defaults do not apply.
+    Without a release, the whole line is checked. Mooring groups require about 500 to 1000 N above
+    the release at slack water; the defaults are 500 N for wire and 300 N for rope. Pieces with
+    ``slack: allowed`` and line on the seabed are exempt. The defaults do not apply if the line
+    above the release is shorter than `SHORT_LEAD`.
     """
     file = leg.file
     lowest = len(file.pieces) - 1 if file.release is None else file.release

@@ -66,11 +66,10 @@ class Lift:
     Attributes
     ----------
     index, label : index and label of the piece
-    mass : mass of the lift in air [kg]; None if unknown, and for a cable or chain, which is not
-        lifted
-    weight : weight of the lift in water [N], positive down; None if a length is unknown
-    hanging : weight in water of everything over the side, including the lift [N], positive down.
-        The value is the load on a winch that carries everything over the side
+    mass : mass in air [kg]; None if unknown, and for a cable or chain, which is not lifted
+    weight : weight in water [N], positive down; None if a length is unknown
+    hanging : weight in water of everything over the side, including the lift [N], positive down;
+        the load on a winch that carries everything over the side
     """
 
     index: int
@@ -111,14 +110,13 @@ class Deck:
     result, environment : result in the environment of the sheets, and name of this environment
     order : deployment order
     parts : pieces and clamps down the line, leg by leg in a net
-    deployment, recovery : parts in the order in which they go over the side, and in the order in
-        which they surface
+    deployment, recovery : parts in the order in which they go over the side, and in order of
+        surfacing
     rise : rise of the line without its anchor; None for a net, or without a solution
     plan : plan of the anchor drop, or the reason why there is none; None for an anchor-first
         deployment, and for a net
     environments : names of the environments in which the mooring has an equilibrium
     notes : missing information, with reasons
-    assessment : result of the design check
     """
 
     result: Result
@@ -177,8 +175,7 @@ def deck_of(
 
     Parameters
     ----------
-    moorings : the mooring in each environment, with equal cut lengths; the environment of the
-        sheets comes first
+    moorings : the mooring in each environment, that of the sheets first, with equal cut lengths
     ship_speed, streamed, course : inputs of `calm.drop.drop_plan` [m/s], [m], [degrees]
 
     Raises
@@ -281,12 +278,8 @@ def surfacing(
 ) -> tuple[RecoveredItem, ...]:
     """List the rising parts in order of surfacing, followed by the parts that stay below.
 
-    Without a `recovery`, the times are None and the parts are in line order.
-
-    Parameters
-    ----------
-    parts : pieces and clamps down the line
-    pieces : indices of the pieces that rise
+    Without a `recovery`, the times are None and the parts are in line order. `pieces` contains the
+    indices of the pieces that rise.
     """
     rising = [one for one in parts if one.index in pieces]
     if recovery is None:

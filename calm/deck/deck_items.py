@@ -34,7 +34,7 @@ class DeckItem:
     depth, height : depth, and height above the seabed, of a clamp or of the upper end of a piece
         [m]
     tilt : tilt from the vertical [degrees]
-    tension : maximum tension in a piece [N]; None for a clamp
+    tension : maximum tension in a piece [N]
     serial : serial numbers in the design, separated by commas
     deployed_serial, remark : serial numbers (by default, those in the design) and remark in
         `deployed`
@@ -361,14 +361,14 @@ class Extreme:
 
 @dataclass(frozen=True)
 class DeckInstrument:
-    """Instrument, float or frame that holds an instrument, or release.
+    """Instrument, release, or float or frame that holds an instrument.
 
     Attributes
     ----------
     item : the item in the environment of the sheets
     still : depth in still water [m]; None if the shape in still water is not unique
-    shallowest, deepest : extreme depths over all environments
-    greatest_tilt : maximum tilt over all environments [degrees]
+    shallowest, deepest, greatest_tilt : extreme depths, and maximum tilt [degrees], over all
+        environments
     """
 
     item: DeckItem

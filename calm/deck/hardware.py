@@ -278,12 +278,11 @@ class ShippedComponent:
 
     Attributes
     ----------
-    count, units : number of items, and number of units in these items; an item such as a pair of
-        releases has several units
+    count, units : number of items, and number of units in these items, such as 2 per pair of
+        releases
     length : total length of cable or chain [m]
     mass, volume : totals of the known masses in air [kg] and volumes without packing [m³]
-    missing_masses, missing_volumes : numbers of unknown masses and volumes; any unknown value makes
-        the total a lower bound
+    missing_masses, missing_volumes : numbers of unknown masses and volumes, which the totals omit
     """
 
     use: str

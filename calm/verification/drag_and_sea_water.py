@@ -1,7 +1,7 @@
 """Verification of the formulas for drag, strumming, sea water and gravity (C23).
 
-The drag of smooth bodies is compared over the Reynolds number, the increase of drag by strumming
-with three published fits.
+The drag of smooth bodies is compared over the Reynolds number. The increase of drag by strumming is
+compared with three published fits.
 """
 
 from functools import partial

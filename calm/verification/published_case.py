@@ -236,7 +236,7 @@ def cable(
     ----------
     length, diameter : unstretched length and diameter [m]
     weight : weight in water [N/m]
-    cn, ct : drag coefficients, normal for the diameter D and tangential for the circumference π D
+    cn, ct : normal drag coefficient (reference area D × length), and tangential one (π D × length)
     compliance : strain per newton [1/N]
     """
     normal, tangential = HALF_DENSITY * diameter * cn, HALF_DENSITY * pi * diameter * ct
@@ -353,8 +353,7 @@ class Wake:
     Attributes
     ----------
     aft, depth : distances of the free end behind and below the tow point [m]
-    tension : tension at the tow point [N]
-    angle : angle of the line at the tow point from the horizontal [degrees]
+    tension, angle : tension [N], and angle from the horizontal [degrees], at the tow point
     frequency : strumming frequency [Hz]
     """
 
