@@ -75,7 +75,7 @@ def checked_environment(
     ----------
     situations : solved situations, beginning with the unchanged mooring
     name : name of the mooring in its findings
-    day : date on which acceptances must be valid; today by default
+    day : date for acceptances; today by default
     """
     given, *changed = ([*findings_of(each, name, environment, day=day)] for each in situations)
     if not leg.of_several:
@@ -124,7 +124,7 @@ def assessment_of(
 
     Parameters
     ----------
-    day : date on which acceptances must be valid; today by default
+    day : date for acceptances; today by default
     """
     in_environments = with_cases(in_environments)
     first = next(
@@ -270,7 +270,7 @@ def findings_of(
     Parameters
     ----------
     mooring, environment : names in the findings
-    day : date on which acceptances must be valid; today by default
+    day : date for acceptances; today by default
     """
     if situation.failure is not None:
         for verdict in equilibrium.judge(situation.failure):

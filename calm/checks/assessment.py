@@ -96,9 +96,7 @@ class Assessment:
     launch, recovery : solutions in the first environment with an equilibrium, if any
     backup, losses : results for a break at each connection above the release, and for the loss of
         each buoyant element, from the top
-    inventory : pieces and clamps as handled on deck
     findings : findings of the rules that are not evaluated in each environment
-    limits : limits applied to the mooring
     notices : messages for the user, such as those about expired acceptances
     draws : number of samples and random seed for probabilities, if any
     """
@@ -306,7 +304,7 @@ def _in_words(estimates: tuple[EstimatedFigure, ...]) -> str:
 def estimated(leg: Leg) -> Leg:
     """Return a copy of a leg in which lower bounds of estimates replace missing values.
 
-    Lower bounds for lines in waves are used for a surface line, or in an environment with waves.
+    The lower bounds are those in waves for a surface line, or in an environment with waves.
     """
     file = leg.file
     if not any(part.component.estimates for part in parts_of(file.pieces)):

@@ -29,7 +29,7 @@ class Compared:
     ----------
     name : dotted name of the quantity, such as ``top.depth``
     quantity : name in `calm.quantities`; "" for a text
-    before, after : values in SI units or degrees, or texts; None if unknown
+    before, after : values in SI units or degrees, or texts
     states : states of the rule in both designs, for a margin or utilisation
     of_a_part : whether the value belongs to a piece or clamp
     """

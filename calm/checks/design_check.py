@@ -49,7 +49,7 @@ def check(*designs: Design, day: date | None = None) -> Assessment:
     Parameters
     ----------
     designs : the design in each of its environments
-    day : date on which acceptances must be valid; today by default
+    day : date for acceptances; today by default
 
     Raises
     ------
@@ -71,12 +71,12 @@ def environments_checked(
 ) -> list[MooringInEnvironment]:
     """Apply the rules to each leg of a design, in all situations of its environment.
 
-    The result has one entry per leg, or a single entry for a design without an equilibrium.
+    The result has one entry per leg, or a single entry without an equilibrium.
 
     Parameters
     ----------
     name : name in the findings
-    day : date on which acceptances must be valid; today by default
+    day : date for acceptances; today by default
     """
     environment = design.environment.name or OWN
     given, *changed = situations.situations_of(design)
@@ -109,7 +109,7 @@ def assessment_of(
     Parameters
     ----------
     in_environments : entries of `environments_checked` for all environments, in order
-    day : date on which acceptances must be valid; today by default
+    day : date for acceptances; today by default
     """
     if not in_environments[0].leg.of_several:
         return assess.assessment_of(name, in_environments, day)

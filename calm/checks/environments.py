@@ -56,7 +56,7 @@ def _weaker_than(ordinary: Leg, other: Leg) -> Iterator[Found]:
     """Warn if a current that should be stronger is much weaker than the ordinary current.
 
     The current of `other` should be stronger if the name of its environment suggests a storm, or if
-    its maximum is larger. In the second case, the ends of the profile are ignored.
+    its maximum is larger. Without such a name, the ends of the profile are ignored.
     """
     first, second = (each.file.environment for each in (ordinary, other))
     levels = np.union1d(first.current.depth, second.current.depth)

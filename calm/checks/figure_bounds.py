@@ -131,8 +131,7 @@ def density_out_of_bounds(rope: Cable) -> Iterator[str]:
 def load_bounds(component: Component) -> tuple[float, float, str] | None:
     """Return the minimum and maximum plausible breaking load of a cable or chain [N].
 
-    The third item names the values from which the bounds are computed. The result is None for other
-    kinds.
+    The third item names the values used for the bounds. The result is None for other kinds.
     """
     if isinstance(component, Chain):
         bars = 2.0 * rope_section(component)
@@ -163,8 +162,8 @@ def load_bounds(component: Component) -> tuple[float, float, str] | None:
 def load_out_of_bounds(component: Component, most: float, size: str) -> Iterator[str]:
     """Yield a message if a load rating of a component is implausibly large or small.
 
-    `most` is the maximum plausible load if the component is neither cable nor chain [N]. `size`
-    names the values from which `most` was computed.
+    For a component other than a cable or chain, `most` is the maximum plausible load [N], and
+    `size` names the values used for `most`.
     """
     least = 0.0
     if (bounds := load_bounds(component)) is not None:

@@ -122,7 +122,7 @@ class MissingFigure:
     quantity : key of the missing value
     needed_by : names of the rules
     pieces, places : labels and places of the affected pieces and clamps
-    class_estimate : estimate of the value, too low to satisfy the rules; None without an estimate
+    class_estimate : estimate of the value, too low to satisfy the rules, if any
     """
 
     component_id: str
@@ -201,8 +201,7 @@ class Verdict:
     def utilisation(self) -> float | None:
         """Ratio of demand to capacity; above 1 if the limit is exceeded.
 
-        This is value / limit for an upper limit, and limit / value for a lower limit. The ratio is
-        infinite without capacity, and None if the limit is missing or 0.
+        The ratio is infinite without capacity, and None if the limit is missing or 0.
         """
         if self.margin is None or not self.limit or self.value is None:
             return None
@@ -306,8 +305,7 @@ class Rule:
     judge : function that yields verdicts from the evidence, such as a `LegResult`
     of_anchor : whether the rule is skipped without an anchor
     criteria : function that yields the criteria for a `Leg`
-    once : whether the rule is evaluated once per mooring, from a `Handling`, instead of in each
-        environment and situation
+    once : whether the rule is evaluated once per mooring, from a `Handling`
     situation, case : situation and load case of a rule with `once`; the codes are L launch, R rise,
         B break, 0 still water
     counted : function used instead of `judge` to count random samples that exceed limits
@@ -372,7 +370,7 @@ class Finding(Verdict):
     source : source of the rule and its limit
     situation : name of the change to the design; `AS_GIVEN` for the unchanged design
     accept : entry in the file that accepts the finding, if any
-    unaccepted : state without `accept`, for an accepted finding
+    unaccepted : state without `accept`
     probability : probability that the limit is exceeded
     estimates : estimates on which the finding relies
     """
@@ -464,8 +462,8 @@ def _worst_first(finding: Finding) -> tuple[tuple[int, float], float]:
 def governing(findings: Iterable[Finding]) -> Finding:
     """Return the finding with the largest utilisation.
 
-    Of findings with equal utilisation, the most severe is returned. If no finding has a
-    utilisation, the result is the most severe finding with the smallest margin.
+    Of findings with equal utilisation, the most severe is returned. Without utilisations, the
+    result is the most severe finding with the smallest margin.
     """
     found = [*findings]
     used = [(use, one) for one in found if (use := one.utilisation) is not None]

@@ -32,8 +32,8 @@ def grown(
 ) -> tuple[files.Piece, ...]:
     """Return the pieces with biofouling on everything above `fouling.depth` in still water.
 
-    A cable or chain that crosses this depth is split there, and its two pieces keep the label.
-    `given` is the result without biofouling, which supplies the depths.
+    A cable or chain that crosses this depth is split there. Depths come from `given`, the result
+    without biofouling.
     """
     gravity = given.leg.water.gravity
     return tuple(

@@ -40,9 +40,9 @@ class Break:
     Attributes
     ----------
     break_after, label : index and label of the piece above the break
-    margin : net buoyancy of the section with the release, after all releases open [N]
+    margin, required : net buoyancy of the section with the release, after all releases open, and
+        its required value [N]
     weight_lifted : weight in water of the non-buoyant pieces in this section [N]
-    required : required margin [N]
     judged : False for a break that strands the release in any design
     loose : net buoyancy of the section that drifts off before the releases open [N]
     """
@@ -64,9 +64,9 @@ class Loss:
     ----------
     index : index of the lost piece, or of the piece that carries the lost clamp
     label, place : label of the lost element, and its place in the file
-    margin : net buoyancy of all pieces that rise with the release [N]
+    margin, required : net buoyancy of all pieces that rise with the release, and its required value
+        [N]
     weight_lifted : weight in water of the non-buoyant pieces that rise [N]
-    required : required margin [N]
     """
 
     index: int

@@ -65,8 +65,7 @@ def gathered(
 ) -> dict[tuple[str, str], list[Finding]]:
     """Group the findings that lack a value by component id and missing value.
 
-    Each finding gets the `MissingFigure` of its group. `parts` maps labels to the pieces and clamps
-    of the line.
+    Each finding gets the `MissingFigure` of its group. `parts` maps labels to pieces and clamps.
     """
 
     def value(finding: Finding) -> tuple[str, str]:
@@ -97,10 +96,8 @@ def with_missing(
 ) -> list[Finding]:
     """Replace the findings that lack a value with findings of the rule `missing`.
 
-    Parameters
-    ----------
-    parts : pieces and clamps of the line, by label
-    mooring, environment : names in the new findings
+    `parts` maps labels to pieces and clamps. `mooring` and `environment` are the names in the new
+    findings.
     """
     every = list(findings)
     lacking = gathered(filter(is_lacking, every), parts)

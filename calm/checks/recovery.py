@@ -30,6 +30,8 @@ from calm.solve import FreeMotion, Settings, part_of, plumb_speed, solve_rise
 class Recovery:
     """Rise of a line without its anchor, starting from the equilibrium of the mooring.
 
+    Tensions are NaN for pieces that do not rise, and arrival times for pieces that stay below.
+
     Attributes
     ----------
     released : index of the lowest piece that rises: the lowest release, or the piece above the
@@ -37,9 +39,8 @@ class Recovery:
     rise_speed : terminal speed, positive up [m/s]; 0 if the line does not rise
     net_buoyancy : net buoyancy of the rising line at the equilibrium depths [N]
     time_to_surface : time until the first buoyant piece surfaces [s]; None if no piece surfaces
-    tension_top, tension_bottom : (n,) tensions of the pieces above the anchor [N]; NaN for pieces
-        that do not rise
-    arrival : (n,) time at which each piece surfaces [s]; NaN for a piece that stays below
+    tension_top, tension_bottom : (n,) tensions of the pieces above the anchor [N]
+    arrival : (n,) time at which each piece surfaces [s]
     order : indices of pieces that are buoyant enough to surface alone, in order of surfacing
     tangles : indices of pieces that overtake pieces above them
     in_still_water : whether the rise was computed in still water, without a solution in the current

@@ -1,7 +1,6 @@
 """Situations of a mooring: its environment as given, or with one change.
 
-The changes are still water, tide, biofouling, strumming, profiler position, and the values as
-deployed. The module also contains the rules on currents.
+The changes are those of `situations_of`. The module also contains the rules on currents.
 """
 
 from collections import deque
@@ -77,10 +76,10 @@ def situations_of(design: Design) -> tuple[Situations, ...]:
     These situations are:
 
     - still water, unless a surface line is slack there;
-    - high water, low water and still low water, if the environment has a `depth_range`;
+    - high, low and still low water, if the environment has a `depth_range`;
     - profilers at their lower stops and at the position of maximum wire angle;
     - biofouling, if `fouling` is set;
-    - cables with Cn × 1.5, if no strumming law is in use;
+    - cables with Cn × 1.5, without a strumming law;
     - the depth and lengths of `deployed`, if they differ from the design.
 
     A fitted piece keeps the length that it has in the design as given.

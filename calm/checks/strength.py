@@ -38,9 +38,9 @@ def governing_load(
 ) -> tuple[float | None, str]:
     """Return the allowable load [N], and the key of the load rating that governs it.
 
-    The allowable load is the smaller of working load × `working_factor` and breaking load /
-    `factor`. The working load of a synthetic rope counts only without a breaking load. Without any
-    load rating, the result is None and "".
+    This is the smaller of working load × `working_factor` and breaking load / `factor`. The working
+    load of a synthetic rope counts only without a breaking load. Without any load rating, the
+    result is None and "".
     """
     known, working = [], counted_working_load(component)
     if working is not None:
@@ -133,11 +133,8 @@ def _strength_words(
 def load_text(part: JudgedPart | Piece, tension: float, when: str = "", bound: str = "") -> str:
     """Describe the load on a piece, such as ``Tension in wire 1 is 5.31 kN``.
 
-    Parameters
-    ----------
-    tension : load [N]
-    when : text that names the operation, such as " during the descent"
-    bound : " at most" for an upper bound of the load
+    `when` names the operation, such as " during the descent". `bound` is " at most" for an upper
+    bound of the load.
     """
     what = "Tension in" if isinstance(part.component, Flexible) else "Load on"
     return f"{what} {part.label}{when} is{bound} {say('load', tension)}"
@@ -156,8 +153,8 @@ def no_load_known(load: str) -> tuple[str, str]:
 def release_load(leg: Leg) -> Iterator[Criterion]:
     """Check the load on every release, in service and at opening, against its rated loads.
 
-    At opening, a release carries the tension of the line below it. If `opening_load` is unknown,
-    the allowable load in service is the limit at opening.
+    At opening, a release carries the tension of the line below it. Without an `opening_load`, the
+    allowable load in service is the limit.
     """
     factors, surface = leg.file.checks.safety_factor, reaches_the_surface(leg)
     for part in pieces_of(leg):
@@ -297,8 +294,8 @@ _UNKNOWN_WEIGHT = "the anchor's weight in water is unknown"
 def anchor_weight(leg: Leg) -> Iterator[Criterion]:
     """Check that the anchor's weight in water is at least factor × (V + H / friction).
 
-    V and H are the vertical and horizontal anchor load. The rule is Dewey's for deadweight anchors,
-    with a factor of 1.5.
+    V and H are the vertical and horizontal anchor load. In Dewey's rule for deadweight anchors, the
+    factor is 1.5.
     """
     weight = _weight(leg)
 

@@ -52,7 +52,7 @@ class MooringInWaves:
 def wave_strength(evidence: MooringInWaves) -> Iterator[Verdict]:
     """Check the maximum tension of each piece in waves against its load ratings.
 
-    The breaking load is divided by the factor of API RP 2SK for a dynamic analysis. The result is
+    The breaking load is divided by the factor of API RP 2SK for a dynamic analysis. The verdict is
     unknown for a surface mooring in an environment without waves.
     """
     leg, waves = evidence.leg, evidence.waves

@@ -68,8 +68,8 @@ class Lift:
     index, label : index and label of the piece
     mass : mass in air [kg]; None if unknown, and for a cable or chain, which is not lifted
     weight : weight in water [N], positive down; None if a length is unknown
-    hanging : weight in water of everything over the side, including the lift [N], positive down;
-        the load on a winch that carries everything over the side
+    hanging : weight in water of everything over the side, which is the winch load [N], positive
+        down
     """
 
     index: int
@@ -87,7 +87,7 @@ class Lifts:
     ----------
     deployment : lifts in the order in which they go over the side
     recovery : lifts from the top of the line down to the release
-    unknown : labels of all pieces and clamps of unknown mass, which may belong to the heaviest lift
+    unknown : labels of all pieces and clamps of unknown mass
     """
 
     deployment: tuple[Lift, ...]
@@ -108,7 +108,6 @@ class Deck:
     Attributes
     ----------
     result, environment : result in the environment of the sheets, and name of this environment
-    order : deployment order
     parts : pieces and clamps down the line, leg by leg in a net
     deployment, recovery : parts in the order in which they go over the side, and in order of
         surfacing

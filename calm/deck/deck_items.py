@@ -141,8 +141,8 @@ class DeckItem:
     def kind(self) -> tuple[object, ...]:
         """Key for grouping: consecutive items with the same key share a row.
 
-        Floats and clamps of the same component share a row. These items have separate rows: cables,
-        chains, anchors, holders of instruments, releases, and items with a serial number or remark.
+        Cables, chains, anchors, releases, holders of instruments, and items with a serial number or
+        remark have separate rows.
         """
         alone = not self.is_rigid or self.holds_instrument or self.role == "anchor"
         return (self.label,) if alone or self._has_own_data else (self.name, self.on)
@@ -154,7 +154,7 @@ class DeckRow:
 
     Attributes
     ----------
-    items : consecutive equal pieces, or consecutive equal clamps
+    items : consecutive equal pieces or clamps
     floats : equal floats clamped on the cable or chain in `items`
     between, after : hardware between the items, and after the last item
     """

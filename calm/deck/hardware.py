@@ -167,7 +167,7 @@ class Stock:
     kind : a member of `ORDER`
     use, name : id and name of the component; accessories have only a name
     length : total length of chains [m]
-    basis : method of counting, if the item is not itself a piece of the line
+    basis : method of counting accessories
     """
 
     kind: str
@@ -194,11 +194,8 @@ class Stock:
 def hardware_of(legs: Sequence[Sequence[DeckItem]]) -> tuple[Stock, ...]:
     """List the connectors and chains of a line or of legs, with their accessories.
 
-    The numbers of accessories follow these assumptions:
-
-    - A shackle has a bolt with nut and cotter pin, unless its definition mentions a screw pin.
-    - A cable whose termination mentions a thimble has two thimbles.
-    - Each contact of dissimilar metals needs an isolator, and an anode for the less noble piece.
+    Accessories are the pins of shackles, the thimbles of cables, and isolators and anodes between
+    dissimilar metals.
     """
     parts = [one for leg in legs for one in leg]
     groups: dict[tuple[str, str], list[DeckItem]] = {}

@@ -68,7 +68,6 @@ class Case:
     tolerance : largest allowed difference [unit], > 0
     why : reason for the tolerance, in a sentence
     got : function that computes the value with CALM [unit]
-    kind : origin of the expected value
     """
 
     name: str
@@ -167,8 +166,7 @@ def table(
     ----------
     figures : columns of the table
     rows : name, function that computes the solution, and published values of each row
-    why : reason for the tolerances
-    kind : origin of the values
+    why, kind : as in `Case`
     """
 
     def case(

@@ -1,7 +1,6 @@
 """Verification in still water: catenaries, an elastic rope, a slack line, and an anchor drop.
 
-The cases are C12 to C14 (catenaries), C15 (rope under its weight and a load) and C22 (watch circle
-of a slack mooring).
+The case numbers are C12 to C14 (catenaries), C15 (rope) and C22 (watch circle of the slack line).
 """
 
 import re
