@@ -41,8 +41,9 @@ _INSULATED = ("plastic", "jacket", "sheath", "coated", "insulat")
 
 
 GRAPPLED = 100.0
-"""Water depth up to which a single release is accepted [m]; a default of CALM. In shallow water, a
-diver or a grapnel can recover a line whose release fails.
+"""Water depth up to which a single release is accepted [m]; a default of CALM.
+
+In shallow water, a diver or a grapnel can recover a line whose release fails.
 """
 
 LEAST_BELOW_RELEASE = 1.0
@@ -134,9 +135,8 @@ def hardware(handling: Handling) -> Iterator[Verdict]:
 def swivel(handling: Handling) -> Iterator[Verdict]:
     """Check that a swivel separates each wire that is not torque-balanced from a float at its end.
 
-    Wire rope that is not torque-balanced twists as its load changes. A float in the current resists
-    this rotation, so the wire kinks. A swivel at either end lets the wire turn. Chain or synthetic
-    rope at an end also lets the wire turn, because neither transmits torque.
+    Such a wire twists as its load changes, and kinks if a float resists the rotation. A swivel at
+    either end suffices. An end at a chain or rope needs none.
     """
     pieces = handling.leg.file.pieces
     for index, piece in enumerate(pieces):
@@ -228,8 +228,8 @@ def _span(clamp: Clamp, middle: float) -> tuple[float, float, Clamp]:
 def metals(handling: Handling) -> Iterator[Verdict]:
     """Report contacts between dissimilar metals, if both materials are known.
 
-    Pieces and clamps that are `insulated` have no contact. Instrument clamps have plastic jaws, so
-    a clamped item is in contact with the line only if its component has `insulated: false`.
+    Parts that are `insulated` have no contact. Clamped items have plastic jaws, and are in contact
+    with the line only with ``insulated: false``.
     """
     warned: set[str] = set()
     for base, noble, volts in unlike_metals(handling.leg.file.pieces):
@@ -251,8 +251,7 @@ def _is_insulated(part: Piece | Clamp) -> bool:
 def unlike_metals(pieces: Sequence[Piece]) -> Iterator[tuple[Piece | Clamp, Piece | Clamp, float]]:
     """Yield the contacts between dissimilar metals.
 
-    Each contact is the less noble part, the more noble part, and their potential difference [V]. A
-    part that is `insulated` has no contact.
+    Each contact is the less noble part, the more noble part, and their potential difference [V].
     """
     pairs: list[tuple[Piece | Clamp, Piece | Clamp]] = [*pairwise(pieces)]
     for piece in pieces:
@@ -278,10 +277,7 @@ _HOLDS = "Use a stronger clamp, a second clamp, or a stopper below it."
 
 @rule("clamp-grip")
 def clamp_grip(result: LegResult) -> Iterator[Verdict]:
-    """Check the grip of each clamp against the force on the clamped item [N].
-
-    The force results from the submerged weight of the item and its drag in the current.
-    """
+    """Check the grip of each clamp against weight and drag of the clamped item in the current."""
     water, depth = result.leg.water, np.asarray(result.clamps.depth)
     flows, densities = water.current_at(depth), water.density_at(depth).tolist()
     for part in _clamps(result.leg):
@@ -295,11 +291,10 @@ def clamp_grip(result: LegResult) -> Iterator[Verdict]:
 
 @rule("clamp-grip", situation="launch and recovery", once=True)
 def clamp_grip_in_transit(handling: Handling) -> Iterator[Verdict]:
-    """Check the grip of each clamp against the larger of its axial forces in launch and recovery.
+    """Check the grip of each clamp against the axial force during launch and recovery.
 
-    Each force [N] results from the submerged weight of the clamped item and its drag in flow along
-    the line. The speed of the flow is the touchdown speed of the anchor during launch, and the
-    terminal rise speed of the line in the recovery. A line that is hauled in has no ascent.
+    The force [N] is the submerged weight of the clamped item, and its drag in flow along the line
+    at the largest touchdown speed of the anchor or at the rise speed of the line.
     """
     launch, rise = handling.launch, None if is_hauled_in(handling) else handling.recovery
     deep = np.array(handling.leg.water.depth)
@@ -320,8 +315,9 @@ def clamp_grip_in_transit(handling: Handling) -> Iterator[Verdict]:
 
 
 PROFILER_WIRE = 6.35e-3, 9.53e-3
-"""Diameter range of jacketed wire on which moored profilers travel, 1/4 to 3/8 in [m]. Source:
-McLane Moored Profiler, user manual.
+"""Diameter range of jacketed wire for moored profilers, 1/4 to 3/8 in [m].
+
+Source: McLane Moored Profiler, user manual.
 """
 
 
@@ -329,10 +325,8 @@ McLane Moored Profiler, user manual.
 def profiler(result: LegResult) -> Iterator[Verdict]:
     """Check the tension, wire, path and drive force of each profiler at its current position.
 
-    Other positions of the profiler are checked as separate situations. The flow along the wire
-    past the profiler is at most the speed of the profiler plus the current × sine of the tilt.
-    Wheel friction, and the effect of compression on the weight of the profiler, are unknown and
-    neglected.
+    The flow along the wire past the profiler is at most the profiler speed plus current ×
+    sin(tilt). Wheel friction and compression of the profiler are neglected.
     """
     for row in result.clamps:
         if isinstance(row.part.component, Profiler):
@@ -371,8 +365,9 @@ def _of_profiler(result: LegResult, row: ClampRow) -> Iterator[Verdict]:
 
 
 LONGEST_PROFILE = 8.0 * 3600.0 / 1.25
-"""Longest duration of a profile [s]. A McLane profiler stops after 1.25 times the expected time, or
-8 hours.
+"""Longest duration of a profile [s].
+
+A McLane profiler stops after 1.25 times the expected time, or after 8 hours.
 """
 
 

@@ -1,12 +1,8 @@
 """Apply the design rules to moorings.
 
-Each mooring is checked in each of its environments, and then for launch, recovery and breaks.
-
-If the inputs of the design have an `uncertainty`, each finding with a limit gets the probability
-that the limit is exceeded. For this estimate, random samples of the mooring are solved in the
-situation of the finding, and the samples that exceed the limit are counted. Solving a launch or an
-ascent takes as long as solving many equilibria, so launch, recovery and breaks are solved for the
-first `HANDLED` samples only. A sample without equilibrium counts as exceeding every limit.
+The probability that a limit is exceeded is the fraction of random samples that exceed the limit. A
+sample without equilibrium counts as exceeding every limit. Launch, recovery and breaks take much
+longer to solve, and use only the first `HANDLED` samples.
 """
 
 from collections import Counter
@@ -72,16 +68,14 @@ def checked_environment(
 ) -> MooringInEnvironment:
     """Apply the rules to a leg in all its situations.
 
-    In the result, `findings` contains all findings for the unchanged mooring, and any worse
-    findings for other situations. `tighter` contains findings for other situations if their
-    utilisation is larger than in `findings`. A failure that occurs only with strumming cables
-    becomes a warning, because it is uncertain whether the cables strum.
+    A failure that occurs only with strumming cables becomes a warning, because cables may not
+    strum.
 
     Parameters
     ----------
     situations : solved situations, beginning with the unchanged mooring
     name : name of the mooring in its findings
-    day : date on which acceptances must be valid; today by default
+    day : date for acceptances; today by default
     """
     given, *changed = ([*findings_of(each, name, environment, day=day)] for each in situations)
     if not leg.of_several:
@@ -107,9 +101,9 @@ def checked_environment(
 
 
 def _tighter(listed: Iterable[Finding], others: Iterable[Finding]) -> Iterator[Finding]:
-    """For each rule and part, yield the governing finding of `others` if it exceeds `listed`.
+    """Yield findings of `others` with a larger utilisation than in `listed`.
 
-    Findings are compared by their utilisation.
+    The result has at most one finding for each rule and piece or clamp.
     """
     known: dict[tuple[str, Place | None], float] = {}
     for one in listed:
@@ -124,14 +118,13 @@ def _tighter(listed: Iterable[Finding], others: Iterable[Finding]) -> Iterator[F
 def assessment_of(
     name: str, in_environments: Sequence[MooringInEnvironment], day: date | None = None
 ) -> Assessment:
-    """Check launch, recovery and breaks of a mooring, and combine all findings in an assessment.
+    """Check launch, recovery and breaks of a mooring, and build its assessment.
 
-    Launch, recovery and breaks are checked in the first environment in which the mooring has an
-    equilibrium.
+    Launch, recovery and breaks are checked in the first environment with an equilibrium.
 
     Parameters
     ----------
-    day : date on which acceptances must be valid; today by default
+    day : date for acceptances; today by default
     """
     in_environments = with_cases(in_environments)
     first = next(
@@ -177,8 +170,7 @@ def assessment_of(
 def with_cases(in_environments: Sequence[MooringInEnvironment]) -> tuple[MooringInEnvironment, ...]:
     """Return the environments with load-case codes added to all findings.
 
-    Remedies for an anchor that is too light are changed to name the largest weight that any finding
-    requires.
+    All remedies for an anchor that is too light name the largest weight that any finding requires.
     """
     numbers = _environment_numbers(in_environments)
     every = (one for checked in in_environments for one in (*checked.findings, *checked.tighter))
@@ -210,9 +202,9 @@ def with_cases(in_environments: Sequence[MooringInEnvironment]) -> tuple[Mooring
 def cased(
     findings: Iterable[Finding], in_environments: Sequence[MooringInEnvironment]
 ) -> list[Finding]:
-    """Return all findings, with load-case codes for the rules on currents and drag coefficients.
+    """Add load-case codes to the findings on currents and drag coefficients.
 
-    Findings of these rules get the code of the unchanged mooring in their environment.
+    The code is that of the unchanged mooring in the environment of the finding.
     """
     numbers = _environment_numbers(in_environments)
     return [
@@ -224,7 +216,7 @@ def cased(
 
 
 def _environment_numbers(in_environments: Sequence[MooringInEnvironment]) -> dict[str, int]:
-    """Number the environments in order.
+    """Number the environments in order, from 1.
 
     The keys are the names of the environments, and the names used in `in_environments`.
     """
@@ -273,13 +265,12 @@ def findings_of(
 ) -> Iterator[Finding]:
     """Yield the findings of the rules that are evaluated in every situation.
 
-    Findings about a substitute anchor are omitted. Rules that do not apply to a leg whose top is
-    held are omitted as well.
+    Rules that do not apply to a leg of a net are omitted (see `is_judged`).
 
     Parameters
     ----------
-    mooring, environment : names of the mooring and the environment in the findings
-    day : date on which acceptances must be valid; today by default
+    mooring, environment : names in the findings
+    day : date for acceptances; today by default
     """
     if situation.failure is not None:
         for verdict in equilibrium.judge(situation.failure):
@@ -309,9 +300,9 @@ def _estimated_in(situation: Situation) -> LegResult:
 
 
 def is_judged(file: MooringFile, rule: Rule, piece: int = 0) -> bool:
-    """Return whether a rule applies to a piece of a line.
+    """Return whether a rule applies to the piece of a line with the index `piece`.
 
-    `piece` is the index of the piece. Fewer rules apply to a line that is a leg of a net.
+    Fewer rules apply to a line that is a leg of a net.
     """
     anchored = file.pieces[-1].use != STAND_IN
     applies = anchored or not (rule.of_anchor or piece == len(file.pieces) - 1)
@@ -397,11 +388,11 @@ RULES = {each.name: each for each in (*_WHOLE, *STANDING, *IN_WAVES, *ONCE)}
 HANDLED = 64
 """Number of samples for which launch and recovery are solved.
 
-These are the first samples, because the beginning of a Sobol' sequence is itself a valid sequence.
+The first samples are used: the beginning of a Sobol' sequence is itself a valid sequence.
 """
 
 Key = tuple[str, "Place | None"]
-"""Name of a rule, and the part of the line that its finding refers to."""
+"""Name of a rule, and place of the piece or clamp to which its finding refers."""
 
 
 def with_probabilities(
@@ -416,7 +407,7 @@ def with_probabilities(
     Raises
     ------
     UsageError
-        The number of samples is not a power of two within the limits.
+        The number of samples is not an allowed power of two.
     """
     normals = normals_of(checked_samples(samples), seed)
     expect_many(samples * len(assessment.in_environments), CompiledPart.NEARBY)
@@ -471,9 +462,10 @@ _ALL: Key = ("", None)
 def _exceeding_samples(
     leg: Leg, draws: Sequence[Draw], mapped: Mapped, *, in_equilibrium: bool = True
 ) -> Counter[Key]:
-    """Count the samples that exceed each limit, in equilibrium or otherwise during handling.
+    """Count the samples that exceed each limit.
 
-    Handling is launch, recovery and breaks.
+    The samples are solved in equilibrium or, if `in_equilibrium` is false, for launch, recovery and
+    breaks.
     """
     block = BLOCK if in_equilibrium else BLOCK // 16
     blocks = [draws[first : first + block] for first in range(0, len(draws), block)]

@@ -48,9 +48,9 @@ EXAMPLE = "EXAMPLE"
 
 @dataclass(frozen=True, eq=False)
 class Situation:
-    """Solution of a mooring in an environment, either unchanged or with one changed input.
+    """Solution of a mooring in an environment, unchanged or with one changed input.
 
-    Exactly one of `result` and `failure` is None. Several environments may share a situation.
+    Exactly one of `result` and `failure` is None.
     """
 
     name: str
@@ -60,18 +60,15 @@ class Situation:
 
 @dataclass(frozen=True)
 class MooringInEnvironment:
-    """Solutions and findings of a mooring in one environment.
+    """Solutions and findings of a mooring, or of a leg of a net, in one environment.
 
     Attributes
     ----------
-    environment : name of the environment
-    leg : leg of the design; a net has one `MooringInEnvironment` per leg and environment
     situations : solved situations, beginning with the unchanged mooring
-    findings : all findings for the unchanged mooring, and any worse findings for other situations
-    tighter : for each rule and part, the finding with the largest utilisation in other situations,
-        if this utilisation is larger than in `findings`
-    accepted : accepted findings for all situations, including findings not in `findings`
-    lacking : findings that lack a component value, for all situations; they are not in `findings`
+    findings : all findings for the unchanged mooring, and more severe findings for other situations
+    tighter : findings for other situations with a larger utilisation than in `findings`
+    accepted : accepted findings for all situations
+    lacking : findings for all situations that lack a component value; not in `findings`
     """
 
     environment: str
@@ -96,16 +93,12 @@ class Assessment:
     ----------
     name : name of the mooring, unique among the moorings checked together
     in_environments : one entry per environment (for a net, per environment and leg)
-    launch, recovery : solutions in the first environment with an equilibrium; None if there is no
-        solution
-    backup : results for a break at each connection above the release, from the top
-    inventory : pieces and clamps as they are handled on deck
-    findings : findings of the rules that are not evaluated in each environment, such as those on
-        launch, recovery and breaks
-    losses : results for the loss of each buoyant element above the release, from the top
-    limits : limits applied to the mooring
-    notices : messages for the user, such as those about acceptances that have expired
-    draws : number of samples and random seed used for probabilities; None without probabilities
+    launch, recovery : solutions in the first environment with an equilibrium, if any
+    backup, losses : results for a break at each connection above the release, and for the loss of
+        each buoyant element, from the top
+    findings : findings of the rules that are not evaluated in each environment
+    notices : messages for the user, such as those about expired acceptances
+    draws : number of samples and random seed for probabilities, if any
     """
 
     name: str
@@ -138,7 +131,10 @@ class Assessment:
 
     @property
     def state(self) -> State:
-        """Worst state of all findings; pass if the worst state is accepted or not judged."""
+        """Most severe state of all findings.
+
+        Accepted findings and findings that are not judged count as passed.
+        """
         worst = worst_state(finding.state for finding in self.all_findings())
         return State.PASS if worst in (State.ACCEPTED, State.NOT_JUDGED) else worst
 
@@ -179,9 +175,8 @@ class Assessment:
 class Handling:
     """Input of the rules that are evaluated once per mooring.
 
-    `launch` and `recovery` are solutions, or the reasons why there is no solution. `backup` and
-    `losses` are the results for breaks and lost floats. `result` is the equilibrium; None if there
-    is no equilibrium.
+    `launch` and `recovery` are solutions, or the reason why there is no solution. `backup` and
+    `losses` are results for breaks and lost floats.
     """
 
     leg: Leg
@@ -194,10 +189,9 @@ class Handling:
 
 @dataclass(frozen=True)
 class Acceptance:
-    """Items of `checks: accept:` in a mooring file, applied on a given day.
+    """Accepted findings (`checks: accept:`) of a mooring file, applied on a given day.
 
-    The items apply to findings that fail or are unknown. `parts` maps labels to the pieces and
-    clamps of the line.
+    `parts` maps labels to the pieces and clamps of the line.
     """
 
     accepts: tuple[Accept, ...]
@@ -211,11 +205,10 @@ class Acceptance:
         return cls(file.accepts, day or date.today(), parts)
 
     def of(self, finding: Finding) -> Finding:
-        """Apply the estimates and acceptances of the file to a finding, and return the new finding.
+        """Return a finding after applying the estimates and acceptances of the file.
 
-        If a finding relies on an estimate, a pass becomes estimated and a failure becomes unknown.
-        A finding that fails or is unknown becomes accepted if the file accepts it. An acceptance of
-        the rule `missing` covers every rule that lacks a value of the component.
+        A finding that fails or is unknown becomes accepted if the file accepts the finding. An
+        acceptance of the rule `missing` covers every rule that lacks a value of the component.
         """
         finding = self._estimated(finding)
         if finding.state not in (State.FAIL, State.UNKNOWN):
@@ -241,8 +234,8 @@ class Acceptance:
     def _estimated(self, finding: Finding) -> Finding:
         """Change the state of a finding that relies on the lower bound of an estimate.
 
-        A pass becomes estimated, and a failure becomes unknown. A failure by a specified value
-        remains a failure.
+        A pass becomes estimated, and a failure becomes unknown. A failure remains if a specified
+        value sets the limit.
         """
         part, figures = self.parts.get(finding.component or ""), RULES[finding.rule].figures
         if part is None or not figures or finding.state not in (State.PASS, State.FAIL):
@@ -288,7 +281,7 @@ class Acceptance:
 def _accepted(finding: Finding, accept: Accept) -> Finding:
     """Mark a finding as accepted, unless the tension exceeds the accepted load.
 
-    If the finding has no limit, the accepted load becomes the limit.
+    For a finding without a limit, the accepted load becomes the limit.
     """
     accepted = finding.but(state=State.ACCEPTED, accept=accept, unaccepted=finding.state)
     load, tension = accept.load, finding.value
@@ -309,10 +302,9 @@ def _in_words(estimates: tuple[EstimatedFigure, ...]) -> str:
 
 
 def estimated(leg: Leg) -> Leg:
-    """Return a copy of a leg in which the lower bounds of estimates replace missing values.
+    """Return a copy of a leg in which lower bounds of estimates replace missing values.
 
-    If the environment has waves, or if the line has a surface float, the lower bounds for lines in
-    waves are used.
+    The lower bounds are those in waves for a surface line, or in an environment with waves.
     """
     file = leg.file
     if not any(part.component.estimates for part in parts_of(file.pieces)):

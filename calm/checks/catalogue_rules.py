@@ -1,4 +1,4 @@
-"""Rules on component values: impossible values and missing values, in a catalogue or in a design.
+"""Rules on impossible and missing component values, in a catalogue or in a design.
 
 A missing value is not a fault, except a missing source.
 """
@@ -35,23 +35,27 @@ from calm.physics.seawater import REFERENCE_DENSITY
 from calm.quantities import say
 
 ROUNDING = 1.05
-"""Factor by which rounded values of a data sheet may exceed a limit: 5 %, or 1.7 % of a sphere's
-diameter.
+"""Factor by which rounded values of a data sheet may exceed a limit.
+
+The factor allows an error of 1.7 % in a sphere's diameter.
 """
 
 ROPE_ROUNDING = 1.12
-"""Rounding factor for ropes, larger than `ROUNDING`, since a nominal diameter may be one size below
-the true diameter.
+"""Factor by which rounded values of a rope may exceed a limit.
+
+The factor exceeds `ROUNDING`: a nominal diameter may be one size below the true diameter.
 """
 
 NOMINAL = 1.25
-"""Maximum ratio of a jacketed wire's displaced volume to the volume of its nominal diameter, as
-implied by published masses and weights in water.
+"""Maximum ratio of a wire's displaced volume to the volume of its nominal diameter.
+
+Published masses and weights in water of jacketed wires imply this ratio.
 """
 
 LOOSEST = 0.1
-"""Minimum ratio of a rope's displaced section to its nominal section; the loosest braids displace
-half.
+"""Minimum ratio of a rope's displaced section to its nominal section.
+
+The loosest braids displace half of the nominal section.
 """
 
 LIGHTEST_FLOAT = 0.01
@@ -61,8 +65,9 @@ STEEL_MODULUS = 210e9
 """Young's modulus of steel [Pa]; no cable is stiffer than a solid steel bar."""
 
 SOFTEST_WIRE = 0.05
-"""Minimum ratio of a wire's stiffness to the stiffness of a steel bar of equal diameter. Wires in
-the catalogue have at least 0.17.
+"""Minimum ratio of a wire's stiffness to the stiffness of a steel bar of equal diameter.
+
+Wires in the catalogue have at least 0.17.
 """
 
 STRONGEST_METAL = 350e3
@@ -72,18 +77,21 @@ Links and shackles of the catalogue reach 45e3, computed from their mass and len
 """
 
 HOLLOW = 0.5
-"""Minimum ratio of the density of connecting hardware to the density of its material. Known
-hardware has 0.85.
+"""Minimum ratio of the density of connecting hardware to the density of its material.
+
+Known hardware has 0.85.
 """
 
 ANCHOR_SPEEDS = 0.3, 15.0
-"""Minimum and maximum terminal speed of a falling anchor, computed from its weight and `kt` [m/s].
+"""Minimum and maximum terminal speed of a falling anchor, computed from weight and `kt` [m/s].
+
 Known anchors fall at 1.2 to 5.6 m/s, a 5 t block of steel at 12 m/s.
 """
 
 LEAST_LIFT = 0.1
-"""Minimum ratio of a float's buoyancy to the weight of water in a sphere of its diameter; catalogue
-floats have at least 0.23 (glass in a wide hard hat).
+"""Minimum ratio of a float's buoyancy to the weight of water in a sphere of its diameter.
+
+Floats in the catalogue have at least 0.23 (glass in a wide hard hat).
 """
 
 DEEPEST_WATER = 11000.0
@@ -230,10 +238,10 @@ def _displaced_weight(component: Component, mass: float) -> float:
 
 
 def _rope_faults(rope: Cable) -> Iterator[str]:
-    """Yield values that make a rope too heavy, too stiff, too strong or too buoyant for its size.
+    """Yield messages about values that are implausible for the diameter and material of a rope.
 
-    The weight of the rope is compared with a solid bar. The density of the bar is the specified
-    `density`, or else the density of the `material`, or else the density of steel.
+    The bar for comparison has the specified `density`, or else the density of the `material` or of
+    steel.
     """
     section = rope_section(rope)
     density = rope.density or materials.density_of(rope.material) or STEEL_DENSITY
@@ -274,8 +282,10 @@ def _rope_faults(rope: Cable) -> Iterator[str]:
 
 
 LEAST_BODY_DRAG = 0.02
-"""Minimum ratio of a body's drag area to its volume^(2/3), from streamlined bodies aligned with the
-flow (Hoerner 1965, Fluid-Dynamic Drag, chapter VI). Bodies of the catalogue have 0.6 to 10.
+"""Minimum ratio of a body's drag area to its volume^(2/3).
+
+Streamlined bodies aligned with the flow have this ratio (Hoerner 1965, Fluid-Dynamic Drag, chapter
+VI). Bodies of the catalogue have 0.6 to 10.
 """
 
 SMALL_BODY = 1e-3
@@ -378,9 +388,9 @@ class MissingFigures:
 
 
 def missing_figures(definitions: Mapping[str, Defined]) -> list[MissingFigures]:
-    """List the components of a catalogue that lack values, and the keys of the missing values.
+    """List the components of a catalogue that lack values, with the keys of these values.
 
-    Assemblies are skipped because they have no values of their own.
+    Assemblies have no values of their own, and are skipped.
     """
     found = []
     for identifier, definition in definitions.items():

@@ -23,16 +23,15 @@ Number = float | None
 
 @dataclass(frozen=True)
 class Compared:
-    """The values of one quantity in two designs.
+    """Values of one quantity in two designs.
 
     Attributes
     ----------
     name : dotted name of the quantity, such as ``top.depth``
-    title : title for display
     quantity : name in `calm.quantities`; "" for a text
-    before, after : values in SI units or degrees, or texts; None if unknown
-    states : states of the rule in both designs if the value is a margin; otherwise None
-    of_a_part : whether the value belongs to a piece or a clamp
+    before, after : values in SI units or degrees, or texts
+    states : states of the rule in both designs, for a margin or utilisation
+    of_a_part : whether the value belongs to a piece or clamp
     """
 
     name: str
@@ -50,7 +49,6 @@ class Comparison:
 
     Attributes
     ----------
-    names : names of the two designs
     differences : differences between the two files
     figures : computed values of both designs
     notes : reasons why values are missing
@@ -79,9 +77,7 @@ class Comparison:
 
 
 _Solved = tuple[Result | NoEquilibrium, Assessment | None]
-"""Result of a design, or the reason why there is none, and the assessment of the design (None for a
-tow).
-"""
+"""Result of a design, or the reason why there is none, and the assessment (None for a tow)."""
 _Figures = dict[str, tuple[str, str, Number | str]]
 """Title, quantity and value by the name of the compared value."""
 
@@ -89,11 +85,8 @@ _Figures = dict[str, tuple[str, str, Number | str]]
 def comparison_of(names: tuple[str, str], before: Design, after: Design) -> Comparison:
     """Solve, assess and compare two moorings, nets or tows.
 
-    A design without an equilibrium is compared as far as possible.
-
-    Parameters
-    ----------
-    names : names of the two designs
+    A design without an equilibrium is compared as far as possible. `names` are the names of the two
+    designs.
     """
     found = differences(before.file, after.file)
     designs = _solved(before), _solved(after)

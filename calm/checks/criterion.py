@@ -1,7 +1,7 @@
-"""Criteria: upper or lower limits on a quantity of a part of the line.
+"""Criteria: upper or lower limits on a quantity of a piece or clamp, or of the whole line.
 
 The design check evaluates a criterion for one result. Batch statistics count the profiles that
-violate it.
+violate a criterion.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -26,14 +26,13 @@ AT_SURFACE = 0.1
 
 @dataclass(frozen=True)
 class JudgedPart:
-    """A piece of the line or a clamped instrument, to which a criterion applies.
+    """Piece of the line or clamped instrument to which a criterion applies.
 
     Attributes
     ----------
     label, place : label and place in the file, both unique within the line
-    component : definition of the part
-    index : index of the piece, or of the piece that carries the clamp, counted from the top
-    clamp : index among all clamps of the line, as in the results; None for a piece
+    index : index of the piece, or of the piece that carries the clamp, from the top
+    clamp : index among all clamps of the line; None for a piece
     """
 
     label: str
@@ -66,25 +65,22 @@ def parts_of(leg: Leg) -> list[JudgedPart]:
 
 @dataclass(frozen=True)
 class Criterion:
-    """Limit on a quantity of a single part, or of the whole line.
+    """Limit on a quantity of a piece or clamp, or of the whole line.
 
     Attributes
     ----------
-    part : part to check; for a quantity of the whole line, the top piece or the anchor
+    part : piece or clamp to check; for the whole line, the top piece or the anchor
     quantity : a key of `READINGS`
-    limit : limit in SI units or degrees; None if the component lacks the value for it
-    words : function that takes the value (NaN if unknown) and the result, and returns message and
-        remedy
+    limit : limit in SI units or degrees; None if the component lacks a value for the limit
+    words : function of the value (NaN if unknown) and the result that returns message and remedy
     least : whether the limit is a lower limit
-    beyond : state of the finding if the limit is exceeded, which is fail or warn
-    silent : whether a value of NaN means that the criterion does not apply; otherwise NaN means
-        that the value is unknown
-    source : source of the limit; if "", the source of the rule is given instead
+    beyond : state if the value violates the limit
+    silent : whether the criterion does not apply if the value is NaN; otherwise, NaN means unknown
+    source, figure : as in `Verdict`
     lacks : key of the missing component value, if `limit` is None
-    figure : key of the component value that sets `limit`, for a rule that uses several; else ""
-    stated : function that takes the value and the result, and returns value and limit of a more
-        customary quantity
-    stated_least : whether the limit of that customary quantity is a lower limit
+    stated : function of the value and the result that returns value and limit of a more customary
+        quantity for display
+    stated_least : whether the displayed limit is a lower limit
     """
 
     part: JudgedPart
@@ -101,7 +97,10 @@ class Criterion:
     stated_least: bool = False
 
     def verdict(self, result: LegResult) -> Verdict | None:
-        """Evaluate the criterion for a result; return None if the criterion does not apply."""
+        """Evaluate the criterion for a result.
+
+        Return None if the criterion does not apply.
+        """
         value = READINGS[self.quantity](result, self.part)
         if isnan(value) and self.silent:
             return None
@@ -184,19 +183,20 @@ READINGS: dict[str, Callable[[LegResult, JudgedPart], float]] = {
         1.0 - result.top.used_buoyancy if result.type == "surface" else 0.0
     ),
 }
-"""Functions that read each quantity from a result. `tension` is the maximum over the whole piece,
-`least_tension` the minimum off the seabed, `slide` is H + friction × V.
+"""Functions that extract each quantity from a result.
+
+- `tension`: maximum over the whole piece
+- `least_tension`: minimum off the seabed
+- `slide`: H + friction × V, with horizontal anchor load H and vertical anchor load V
 """
 
 
 def limits_used(file: MooringFile, surface: bool) -> tuple[LimitKey, ...]:
     """Return every limit that the design check applies to a mooring.
 
-    Limits that the design does not set have their defaults; limits without a default apply only if
-    the design sets them. The friction coefficient of an anchor, if specified, overrides
-    `anchor_friction`. The result includes all values and settings that make the check more lenient,
-    such as a load rating that is higher on the line than in the catalogue. If `surface` is true,
-    the top of the mooring has a minimum depth only if the design sets one.
+    All values and settings that make the check more lenient are included, such as a load rating
+    above that of the catalogue. A friction coefficient of the anchor replaces `anchor_friction`.
+    For a surface mooring (`surface`), the minimum top depth has no default.
     """
     given = file.checks.minimum_top_depth is not None
     used = (

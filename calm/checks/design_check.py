@@ -1,7 +1,6 @@
 """The design check: each leg in each environment, then launch, recovery, breaks and composition.
 
-Waves, launch and recovery are solved and checked for a single line only; breaks are checked for
-nets, too.
+For a net of legs, waves, launch and recovery are not checked.
 """
 
 from collections.abc import Sequence
@@ -50,7 +49,7 @@ def check(*designs: Design, day: date | None = None) -> Assessment:
     Parameters
     ----------
     designs : the design in each of its environments
-    day : date on which acceptances must be valid; today by default
+    day : date for acceptances; today by default
 
     Raises
     ------
@@ -70,15 +69,14 @@ def check(*designs: Design, day: date | None = None) -> Assessment:
 def environments_checked(
     design: Design, name: str, day: date | None = None
 ) -> list[MooringInEnvironment]:
-    """Solve a design in its environment in all situations, and apply the rules to each leg.
+    """Apply the rules to each leg of a design, in all situations of its environment.
 
-    The result has one entry per leg. For a design without an equilibrium, it has a single entry,
-    which contains the reason.
+    The result has one entry per leg, or a single entry without an equilibrium.
 
     Parameters
     ----------
-    name : name of the design in its findings
-    day : date on which acceptances must be valid; today by default
+    name : name in the findings
+    day : date for acceptances; today by default
     """
     environment = design.environment.name or OWN
     given, *changed = situations.situations_of(design)
@@ -108,12 +106,10 @@ def assessment_of(
 ) -> Assessment:
     """Check composition, breaks, launch and recovery of a design, and build its assessment.
 
-    For a net, launch and recovery are not checked.
-
     Parameters
     ----------
     in_environments : entries of `environments_checked` for all environments, in order
-    day : date on which acceptances must be valid; today by default
+    day : date for acceptances; today by default
     """
     if not in_environments[0].leg.of_several:
         return assess.assessment_of(name, in_environments, day)

@@ -16,8 +16,10 @@ from calm.files import Piece
 from calm.quantities import say
 
 NOTICED = 1.05
-"""Ratio above which the rule warns. The ratio is the knockdown (or offset) with the drag curve of a
-smooth shape, divided by the knockdown without this curve.
+"""Ratio of knockdowns above which the rule warns.
+
+The knockdown (or offset) with the drag curve of a smooth shape is divided by the knockdown without
+this curve.
 """
 
 _LegVerdict = tuple[LegResult, Verdict]
@@ -25,12 +27,10 @@ _LegVerdict = tuple[LegResult, Verdict]
 
 @rule("drag-coefficient")
 def drag_coefficient(results: Sequence[LegResult]) -> Iterator[_LegVerdict]:
-    """Check that the constant drag coefficients are valid at the Reynolds numbers in the current.
+    """Check that drag coefficients of spheres and cylinders are valid at their Reynolds numbers.
 
-    The rule applies to spheres and cylinders. If a Reynolds number is too large, yield one verdict,
-    with the result for the environment in which the excess is largest. The verdict is a warning if
-    the drag curve of a smooth shape would increase the knockdown; otherwise its state is not
-    judged.
+    Only the largest excess over all environments yields a verdict. The verdict is a warning if the
+    drag curve of a smooth shape would increase the knockdown or offset by more than 5 %.
     """
     fast = [(result, fast_pieces(result)) for result in results]
     found = [(rows[0], result, rows) for result, rows in fast if rows]
@@ -44,9 +44,10 @@ def drag_coefficient(results: Sequence[LegResult]) -> Iterator[_LegVerdict]:
 
 
 def _effect(result: LegResult, fast: set[int]) -> tuple[str, bool]:
-    """Describe how the drag curve for the `fast` pieces changes the knockdown or the offset.
+    """Describe the effect of the drag curve for the `fast` pieces on the knockdown.
 
-    The offset is used for a surface mooring. The flag is true if the change is unfavourable.
+    For a surface mooring, the effect on the offset is described. The flag is true if the effect is
+    unfavourable.
     """
     file = result.file
     if file.solver.drag == "reynolds" or result.leg.of_several:

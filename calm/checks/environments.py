@@ -1,8 +1,7 @@
-"""The rule `environment`: doubtful values in the environments of a mooring.
+"""Rule `environment`: doubtful values in the environments of a mooring.
 
-The rule reports the `Environment.doubts` of each environment. By comparing the environments, it
-also finds a storm that is weaker than the ordinary current, and missing wind if a float has a wind
-area.
+Examples are a storm with a weaker current than the ordinary environment, and missing wind for a
+float with a wind area.
 """
 
 from __future__ import annotations
@@ -54,11 +53,10 @@ def environment(legs: Sequence[Leg]) -> Iterator[Found]:
 
 
 def _weaker_than(ordinary: Leg, other: Leg) -> Iterator[Found]:
-    """Warn if the stronger current is much weaker than the ordinary current at some levels.
+    """Warn if a current that should be stronger is much weaker than the ordinary current.
 
-    The current of `other` counts as stronger because of the name of its environment, or because its
-    maximum is larger. In the second case, it may be weaker at the upper and lower ends of the
-    profile.
+    The current of `other` should be stronger if the name of its environment suggests a storm, or if
+    its maximum is larger. Without such a name, the ends of the profile are ignored.
     """
     first, second = (each.file.environment for each in (ordinary, other))
     levels = np.union1d(first.current.depth, second.current.depth)

@@ -1,7 +1,6 @@
 """Plausible ranges of component values by class: density, strength, drag, sign of the buoyancy.
 
-The rules for a catalogue and for a design share this table: `DRAG_BOUNDS`, the constants here, and
-the densities and strengths of `calm.physics.materials`. `docs/reference/catalogue.md` prints it.
+`docs/reference/catalogue.md` prints these ranges.
 """
 
 from __future__ import annotations
@@ -25,8 +24,7 @@ GREATEST_STRENGTH = 4e9
 ROPE_EFFICIENCY = 0.6
 """Maximum ratio of a rope's breaking stress, over its nominal section, to the strength of its yarn.
 
-A default of CALM: only part of the section is fibre, and a rope has less than the strength of its
-yarns. Ropes in the catalogue have 0.12 to 0.44.
+A default of CALM. Ropes in the catalogue have 0.12 to 0.44.
 """
 
 WEAKEST_ROPE = 0.05
@@ -93,8 +91,9 @@ DRAG_BOUNDS = {
     ),
     ("chain", "cn"): Bounds(1.0, 6.0, _CHAIN),
 }
-"""Bounds of drag coefficients by kind and key. Zero is not plausible for these classes, except for
-`ct` with the friction law `hoerner`.
+"""Bounds of drag coefficients by kind and key.
+
+Zero is not plausible, except for `ct` with the friction law `hoerner`.
 """
 
 
@@ -132,8 +131,7 @@ def density_out_of_bounds(rope: Cable) -> Iterator[str]:
 def load_bounds(component: Component) -> tuple[float, float, str] | None:
     """Return the minimum and maximum plausible breaking load of a cable or chain [N].
 
-    The third item of the result names the values from which the two bounds are computed. Return
-    None for other kinds of components.
+    The third item names the values used for the bounds. The result is None for other kinds.
     """
     if isinstance(component, Chain):
         bars = 2.0 * rope_section(component)
@@ -164,11 +162,8 @@ def load_bounds(component: Component) -> tuple[float, float, str] | None:
 def load_out_of_bounds(component: Component, most: float, size: str) -> Iterator[str]:
     """Yield a message if a load rating of a component is implausibly large or small.
 
-    Parameters
-    ----------
-    most : maximum plausible load of a component that is neither a cable nor a chain [N]; inf if
-        unknown
-    size : names of the values from which `most` was computed
+    For a component other than a cable or chain, `most` is the maximum plausible load [N], and
+    `size` names the values used for `most`.
     """
     least = 0.0
     if (bounds := load_bounds(component)) is not None:
@@ -205,8 +200,9 @@ def wet_weight_out_of_bounds(component: Component) -> Iterator[str]:
 
 
 LIFTS = 10.0
-"""Buoyancy below which the sign of the buoyancy is not checked [N], since many loggers are nearly
-neutral.
+"""Buoyancy below which the sign of the buoyancy is not checked [N].
+
+Many loggers are nearly neutral.
 """
 
 WIND_AREA = 0.02, 20.0

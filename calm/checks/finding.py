@@ -39,10 +39,10 @@ def environment_text(name: str) -> str:
 class State(StrEnum):
     """State of a finding, from the least to the most severe.
 
-    Not judged: there is no limit or planned value for comparison. Estimated: the rule passes, but
-    relies on the lower bound of an `estimate` instead of a published value. Accepted: the rule
-    fails or is unknown, and the design accepts this with a reason. Unknown: the rule lacks a value;
-    this is more severe than a warning because the rule may fail.
+    - Not judged: the rule has no limit or planned value.
+    - Accepted: the rule fails or lacks a value, which the design accepts with a reason.
+    - Estimated: the rule passes, but relies on the lower bound of an `estimate`.
+    - Unknown: the rule lacks a value.
     """
 
     PASS = "pass"
@@ -67,7 +67,7 @@ class State(StrEnum):
 def worst_state(states: Iterable[State]) -> State:
     """Return the most severe state, or pass if there are none.
 
-    `NOT_JUDGED` counts only if all states are `NOT_JUDGED`.
+    `NOT_JUDGED` is returned only if there is no other state.
     """
     every = {*states}
     judged = every - {State.NOT_JUDGED} or every
@@ -77,9 +77,9 @@ def worst_state(states: Iterable[State]) -> State:
 class Conclusion(StrEnum):
     """Conclusion of the design check for a mooring, from best to worst.
 
-    A mooring is incomplete if a rule lacks a value. It passes by acceptance if the design accepts a
-    failure or a utilisation above 1. Open items are warnings, estimates and accepted unknowns;
-    rules that are not judged do not count.
+    - Open items: warnings, estimates and accepted unknown values.
+    - By acceptance: the design accepts a failure or a utilisation above 1.
+    - Incomplete: a rule lacks a value.
     """
 
     PASSES = "passes"
@@ -100,7 +100,7 @@ Sense = Literal["<=", ">="]
 
 @dataclass(frozen=True)
 class Lack:
-    """A component value that a rule needs, but that is missing from the file.
+    """Missing component value that a rule needs.
 
     Attributes
     ----------
@@ -114,16 +114,15 @@ class Lack:
 
 @dataclass(frozen=True)
 class MissingFigure:
-    """A missing component value, with all rules and pieces that need the value.
+    """Missing component value, with all rules and pieces that need the value.
 
     Attributes
     ----------
-    component_id, kind : id of the component, as in `use`, and its kind
+    component_id : id of the component, as in `use`
     quantity : key of the missing value
-    needed_by : names of the rules that need the value
+    needed_by : names of the rules
     pieces, places : labels and places of the affected pieces and clamps
-    class_estimate : estimate of the value, whose lower bound does not satisfy the rules; None
-        without an estimate
+    class_estimate : estimate of the value, too low to satisfy the rules, if any
     """
 
     component_id: str
@@ -162,15 +161,13 @@ class Verdict:
     ----------
     component, place : label and place of a piece or clamp; None for the mooring as a whole
     value, limit : value and limit in SI units or degrees; None if unknown
-    sense : required relation between value and limit; None without a limit
-    state : state of the rule
-    message : text of the verdict, with value and limit
-    remedy : suggested change; None if no change is needed
+    sense : required relation between value and limit
+    remedy : suggested change, if any
     source : source of the limit; "" for the source of the rule
-    lacks : component value that the rule requires but the file lacks; None if none is missing
-    missing : missing value with the rules and pieces that need it, for the rule `missing` only
+    lacks : missing component value that the rule requires, if any
+    missing : missing value and everything that needs it; for the rule `missing` only
     case : code of the load case; None for the code of the environment and situation
-    figure : key of the component value that sets the limit, for a rule that uses several; else ""
+    figure : key of the component value that sets the limit, if several values could
     """
 
     component: str | None
@@ -204,8 +201,7 @@ class Verdict:
     def utilisation(self) -> float | None:
         """Ratio of demand to capacity; above 1 if the limit is exceeded.
 
-        For an upper limit this is value / limit, and for a lower limit it is limit / value. The
-        ratio is infinite if there is no capacity, and None if the limit is missing or 0.
+        The ratio is infinite without capacity, and None if the limit is missing or 0.
         """
         if self.margin is None or not self.limit or self.value is None:
             return None
@@ -228,9 +224,9 @@ def no_capacity(verdict: Verdict) -> bool:
 
 
 def percent_used(utilisation: float) -> float:
-    """Return a utilisation in percent, rounded up to an integer or infinite.
+    """Return a utilisation in percent, rounded up to an integer.
 
-    A utilisation above 1 therefore always exceeds 100 %.
+    Rounding up keeps a utilisation above 1 above 100 %. An infinite utilisation stays infinite.
     """
     percent = 100.0 * utilisation
     return float(ceil(percent - 1e-9)) if isfinite(percent) else percent
@@ -248,10 +244,9 @@ def at_most(
     least: bool = False,
     figure: str = "",
 ) -> Verdict:
-    """Create the verdict on a value with a limit.
+    """Create the verdict on a value with an upper limit, or a lower limit if `least` is true.
 
-    The limit is an upper limit, or a lower limit if `least` is true. `beyond` is the state of the
-    verdict if the value violates the limit. `figure` is as in `Verdict`.
+    `beyond` is the state if the value violates the limit. `figure` is as in `Verdict`.
     """
     sense: Sense = ">=" if least else "<="
     keeps = value >= limit if least else value <= limit
@@ -272,12 +267,10 @@ def unknown(
     lacks: str = "",
     of: LinePart | None = None,
 ) -> Verdict:
-    """Create a verdict with the state unknown, because the rule cannot be evaluated.
+    """Create a verdict with the state unknown, for a rule that cannot be evaluated.
 
-    Parameters
-    ----------
-    lacks : key of the missing component value, if a component value is missing
-    of : piece or clamp whose value is missing; by default `part`
+    `lacks` is the key of the missing component value, if any. `of` is the piece or clamp that lacks
+    the value, by default `part`.
     """
     lacking = of or part
     lack = Lack(lacking.label, lacks) if lacks and lacking is not None else None
@@ -302,23 +295,20 @@ def verdict_on(
 
 @dataclass(frozen=True)
 class Rule:
-    """A rule of the design check, with the function that evaluates it.
+    """Rule of the design check, with the function that evaluates the rule.
 
     Attributes
     ----------
     name : name used in findings, e.g. ``depth-rating``
-    title : title for display
-    quantity : name in `calm.quantities` that determines the unit of values and limits
+    quantity : name in `calm.quantities`, which determines the unit of values and limits
     source : source of the rule and of its default limit
     judge : function that yields verdicts from the evidence, such as a `LegResult`
-    of_anchor : whether the rule checks the anchor, so that it is skipped if there is no anchor
-    once : whether the rule is evaluated once per mooring, with a `Handling` as evidence; otherwise
-        it is evaluated in each environment and situation
-    situation : name of the situation, for a rule that is evaluated once
-    case : code of the load case, for a rule that is evaluated once: L launch, R rise, B break, 0
-        still water
-    counted : function that replaces `judge` when exceeded limits are counted in random samples
-    criteria : function that yields the criteria for a `Leg`, which are evaluated in many profiles
+    of_anchor : whether the rule is skipped without an anchor
+    criteria : function that yields the criteria for a `Leg`
+    once : whether the rule is evaluated once per mooring, from a `Handling`
+    situation, case : situation and load case of a rule with `once`; the codes are L launch, R rise,
+        B break, 0 still water
+    counted : function used instead of `judge` to count random samples that exceed limits
     """
 
     name: str
@@ -379,9 +369,9 @@ class Finding(Verdict):
     ----------
     source : source of the rule and its limit
     situation : name of the change to the design; `AS_GIVEN` for the unchanged design
-    accept : entry in the file by which the finding is accepted
-    unaccepted : state that an accepted finding would have without `accept`
-    probability : probability that the limit is exceeded, if computed
+    accept : entry in the file that accepts the finding, if any
+    unaccepted : state without `accept`
+    probability : probability that the limit is exceeded
     estimates : estimates on which the finding relies
     """
 
@@ -455,8 +445,9 @@ def by_rule(findings: Iterable[Finding]) -> dict[str, list[Finding]]:
 def worst_of(findings: Iterable[Finding]) -> Finding:
     """Return the most severe finding.
 
-    Among equally severe findings, the largest utilisation decides or, without utilisations, the
-    least margin. A finding that is not judged is returned only if there is no other finding.
+    Of equally severe findings, the finding with the largest utilisation is returned. Without
+    utilisations, the smallest margin decides. A finding that is not judged counts only without
+    others.
     """
     found = [*findings]
     judged = [one for one in found if one.state is not State.NOT_JUDGED]
@@ -469,10 +460,10 @@ def _worst_first(finding: Finding) -> tuple[tuple[int, float], float]:
 
 
 def governing(findings: Iterable[Finding]) -> Finding:
-    """Return the governing finding, which is the finding with the largest utilisation.
+    """Return the finding with the largest utilisation.
 
-    Of several findings with the same utilisation, the most severe governs. If no finding has a
-    utilisation, the most severe finding with the least margin governs.
+    Of findings with equal utilisation, the most severe is returned. Without utilisations, the
+    result is the most severe finding with the smallest margin.
     """
     found = [*findings]
     used = [(use, one) for one in found if (use := one.utilisation) is not None]
@@ -484,9 +475,9 @@ def governing(findings: Iterable[Finding]) -> Finding:
 def reported_findings(findings: Iterable[Finding]) -> tuple[Finding, ...]:
     """Select the one or two findings of a rule to be reported.
 
-    These are the finding with the largest utilisation and, if its state is more severe, the worst
-    finding. If the worst finding is only estimated or accepted, it is reported only if the other
-    finding passes. If no finding has a utilisation, only the worst finding is reported.
+    The governing finding is reported, followed by the most severe finding if it is more severe. An
+    accepted or estimated finding follows only a governing finding that passes. Without
+    utilisations, only the most severe finding is reported.
     """
     found = [*findings]
     lead, worst = governing(found), worst_of(found)

@@ -1,10 +1,8 @@
 """Effect of biofouling on the drag and weight of the line.
 
 Biofouling is a layer of uniform thickness on everything above a given depth in still water. The
-diameter of a cable increases by twice the thickness. The drag of a rigid piece increases with its
-projected areas. A body without dimensions is treated as a sphere. Its projected area is the
-`drag_area`, or else the area for a drag coefficient of 1. The layer displaces water, and its weight
-in water follows from its density; without a specified density it is weightless.
+layer increases the diameter of a cable, and the projected areas of a rigid piece. A body without
+dimensions is treated as a sphere. A layer without a specified density is weightless in water.
 """
 
 from collections.abc import Iterator, Sequence
@@ -23,21 +21,19 @@ from calm.physics import drag
 from calm.physics.seawater import REFERENCE_DENSITY
 
 CHAIN_BREADTH = 1.8
-"""Diameter of a cylinder with the displacement of a chain, divided by the bar diameter of the chain
-(OrcaFlex).
+"""Ratio of a chain's equivalent diameter to its bar diameter (OrcaFlex).
+
+A cylinder of the equivalent diameter has the displacement of the chain.
 """
 
 
 def grown(
     pieces: Sequence[files.Piece], given: LegResult, fouling: files.Fouling
 ) -> tuple[files.Piece, ...]:
-    """Return the pieces with biofouling on all parts above `fouling.depth` in still water.
+    """Return the pieces with biofouling on everything above `fouling.depth` in still water.
 
-    A cable or chain that extends below this depth is split there, and both parts keep its label.
-
-    Parameters
-    ----------
-    given : result for the line without biofouling, which supplies the depths
+    A cable or chain that crosses this depth is split there. Depths come from `given`, the result
+    without biofouling.
     """
     gravity = given.leg.water.gravity
     return tuple(

@@ -39,13 +39,10 @@ def is_hauled_in(handling: Handling) -> bool:
 
 @rule("backup", once=True, case="B")
 def backup(handling: Handling) -> Iterator[Verdict]:
-    """Check the net buoyancy that remains to lift the release after a break or the loss of a float.
+    """Check the net buoyancy that lifts the release after a break or the loss of a float.
 
-    The line may break at any connection above the back-up floats, or lose any single buoyant
-    element. The remaining net buoyancy should be at least `backup_margin` (by default a tenth) of
-    the lifted weight, and sufficient for a rise at `minimum_rise_speed`. A compact line below a
-    single float has no back-up buoyancy. A surface mooring without floats below its buoy has no
-    back-up buoyancy either, and is recovered by hauling.
+    The remaining net buoyancy must be at least `backup_margin` × the lifted weight, and sufficient
+    for a rise at `minimum_rise_speed`. A compact line below a single float is not judged.
     """
     if handling.leg.file.release is None:
         if is_hauled_in(handling):

@@ -12,21 +12,22 @@ from calm.physics.materials import CONCRETE_DENSITY, STEEL_DENSITY
 
 @dataclass(frozen=True)
 class InventoryItem:
-    """A piece of the line, or an instrument clamped on a piece.
+    """Piece of the line, or instrument clamped on a piece.
+
+    A mass or weight is None if unknown.
 
     Attributes
     ----------
     index : index of the piece, or of the piece that carries the clamp
-    use, label, role, kind : component id, label, role and kind, as in the file
-    name : name of the component; None if it has none
+    use : component id
     clamped_on, at : label of the piece that carries the clamp, and distance of the clamp from the
         upper end of that piece [m]; None for a piece
-    cut_length : length along the line [m]; None for a fitted cable if no length reaches its target
+    cut_length : length along the line [m]; None for a fitted cable that cannot reach its target
         depth
-    dry_mass : mass in air [kg]; None if unknown
-    wet_weight : weight in water of 1025 kg/m³, positive down [N]; None if the length is unknown
-    items : number of equal components that form this item, such as 2 for a pair of releases
-    lift_mass : mass of a piece with its clamps [kg]; None for a clamp, or if a mass is unknown
+    dry_mass : mass in air [kg]
+    wet_weight : weight in water of 1025 kg/m³, positive down [N]
+    items : number of equal components, such as 2 for a pair of releases
+    lift_mass : mass in air of a piece with its clamps [kg]; None for a clamp
     """
 
     index: int
@@ -50,10 +51,9 @@ class Total:
 
     Attributes
     ----------
-    dry_mass, missing_masses : total mass in air [kg], and number of items whose mass is unknown and
-        not included
-    wet_weight, missing_weights : total weight in water, positive down [N], and number of items
-        whose weight is unknown and not included
+    dry_mass, wet_weight : total mass in air [kg], and total weight in water, positive down [N]
+    missing_masses, missing_weights : numbers of items with an unknown mass or weight, which the
+        totals omit
     """
 
     dry_mass: float
@@ -121,13 +121,11 @@ def _for_whole_piece(
 
 
 def anchor_dry_mass(required_weight: float, density: float, gravity: float) -> tuple[float, float]:
-    """Return the masses in air of a steel anchor and a concrete anchor [kg].
-
-    Both anchors have the given weight in water.
+    """Return the masses in air of a steel and a concrete anchor of equal weight in water [kg].
 
     Parameters
     ----------
-    required_weight : required weight in water [N]
+    required_weight : weight in water [N]
     density : density of the water [kg/m³]
     gravity : gravitational acceleration [m/s²]
     """

@@ -19,9 +19,11 @@ MOST_NAMED = 5
 def joints(handling: Handling) -> Iterator[Verdict]:
     """Yield one warning for all joints without a shackle, link or swivel.
 
-    Three kinds of joints need no hardware: joints of ropes, which are spliced or tied; joints of
-    consecutive equal pieces; and joints of wires with a specified `termination`. The rule
-    `hardware` warns if a line lists no hardware at all.
+    These joints need no hardware:
+
+    - joints of ropes, and of wires with a specified `termination`;
+    - joints of two floats, or of two equal pieces other than cables and chains;
+    - joints within one row of the file, such as an assembly.
     """
     pieces = handling.leg.file.pieces
     if not any(piece.component.role == "connector" for piece in pieces):

@@ -1,8 +1,7 @@
 """Breaks of a design and losses of its floats, and the parts that surface afterwards.
 
-A design is a graph of its pieces. Every leg is a chain of pieces between nodes, fixed ends or the
-seabed, and a break removes one connection. Back-up buoyancy recovers the release after a break
-above it.
+A design is a graph of its pieces, and a break removes one connection. After a break above the
+release, back-up buoyancy recovers the release.
 """
 
 from collections.abc import Collection, Hashable, Iterator, Sequence
@@ -25,10 +24,10 @@ from calm.physics.materials import materials_in
 from calm.solve.solution import standing_lift
 
 SHORT_LEAD = 50.0
-"""Length of line between the lowest floats and the release, up to which breaks between them are not
-checked [m]; a default of CALM. These floats are the back-up buoyancy for everything above them. If
-all floats are so close to the release, as on a bottom lander or a short line below one float, they
-alone recover the mooring.
+"""Line length up to which breaks between the lowest floats and the release are not checked [m].
+
+The value is a default of CALM. The lowest floats are the back-up buoyancy for everything above
+them. On a bottom lander, they alone recover the mooring.
 """
 
 _SEABED, _HELD = object(), object()
@@ -36,16 +35,16 @@ _SEABED, _HELD = object(), object()
 
 @dataclass(frozen=True)
 class Break:
-    """A break of the line below one of its pieces.
+    """Break of the line below one of its pieces.
 
     Attributes
     ----------
     break_after, label : index and label of the piece above the break
-    margin : net buoyancy, after the break, of the section that contains the release [N]
+    margin, required : net buoyancy of the section with the release, after all releases open, and
+        its required value [N]
     weight_lifted : weight in water of the non-buoyant pieces in this section [N]
-    required : required margin [N]
-    judged : False for a break that is not checked because it would strand the release in any design
-    loose : net buoyancy of the section that breaks away at once and drifts, positive up [N]
+    judged : False for a break that strands the release in any design
+    loose : net buoyancy of the section that drifts off before the releases open [N]
     """
 
     break_after: int
@@ -59,16 +58,15 @@ class Break:
 
 @dataclass(frozen=True)
 class Loss:
-    """Loss of one buoyant element, such as a flooded glass ball, while the line stays intact.
+    """Loss of one buoyant element, such as a flooded glass ball, from an intact line.
 
     Attributes
     ----------
     index : index of the lost piece, or of the piece that carries the lost clamp
-    label : label of the lost element
-    margin : net buoyancy that remains for the release and the pieces that rise with it [N]
+    label, place : label of the lost element, and its place in the file
+    margin, required : net buoyancy of all pieces that rise with the release, and its required value
+        [N]
     weight_lifted : weight in water of the non-buoyant pieces that rise [N]
-    required : required margin [N]
-    place : place of the lost element in the file
     """
 
     index: int
@@ -82,12 +80,12 @@ class Loss:
 class LegGraph:
     """Graph of the connections between the pieces, nodes and fixed ends of a design.
 
-    Pieces are identified by their index in the file. In each leg, only the lowest release opens.
+    In each leg of a net, only the lowest release opens.
 
     Parameters
     ----------
-    legs : legs of the design; empty if the design has no equilibrium
-    lifts : net forces (n,) of the pieces of each leg with their clamps, without the anchor [N]
+    legs : legs of the design; empty without an equilibrium
+    lifts : (n,) net forces of the pieces of each leg with their clamps, without the anchor [N]
     """
 
     def __init__(self, legs: Sequence[Leg], lifts: Sequence[Floats]) -> None:
@@ -122,9 +120,9 @@ class LegGraph:
 
     @classmethod
     def upright(cls, leg: Leg) -> "LegGraph":
-        """Return the graph of a single line; net forces are those at depths in the upright line.
+        """Return the graph of a single line, with net forces at the depths in the upright line.
 
-        The graph is empty if no length of the fitted piece reaches its target depth.
+        The graph is empty if a fitted piece cannot reach its target depth.
         """
         with suppress(NoEquilibrium):
             return cls([leg], [standing_lift(leg.line, leg.water)])
@@ -138,7 +136,7 @@ class LegGraph:
     def parts(self, cut: Collection[tuple[int, int]]) -> list[set[Hashable]]:
         """Return the connected parts into which breaks divide the design.
 
-        `cut` contains the leg and the position in the leg of each break.
+        `cut` contains for each break the number of the leg, and the position in the leg.
         """
         parts: list[set[Hashable]] = []
         for number, chain in enumerate(self.chains):
@@ -173,21 +171,15 @@ class LegGraph:
     def breaks(self, whole: Leg) -> tuple[Break, ...]:
         """Return the breaks below every piece that surfaces, in file order.
 
-        The margin is the net buoyancy of the section that contains a release, after all releases
-        have opened. `loose` is the net buoyancy of the section that drifts off before the releases
-        open. The margin of a break inside a cable lies between the margins of the breaks at the two
-        ends of the cable.
+        The margin of a break inside a cable lies between the margins of breaks at the two ends of
+        the cable. Breaks that strand the release in any design are not judged:
 
-        Consecutive floats with only connectors and chain between them form a cluster. Some breaks
-        strand the release in any design and are not judged. These are breaks inside the last
-        cluster above a release, and breaks between this cluster and the release if the two are at
-        most `SHORT_LEAD` apart. If no break remains to be judged, clusters are divided at chains as
-        well. If there is still only one cluster, no break is judged, and only losses of floats are
-        checked.
+        - breaks inside the last cluster of floats above a release;
+        - breaks between this cluster and the release, up to a distance of `SHORT_LEAD`.
 
-        Parameters
-        ----------
-        whole : all pieces of the design as one leg, which supplies the limits of the check
+        Floats with only connectors and chain between them form a cluster. If no break remains to be
+        judged, chain divides clusters. `whole` contains all pieces as one leg, and supplies the
+        limits.
         """
         rising = {one for part in self._rising_parts(()) for one in part}
         before = {one for part in self._free_parts(()) for one in part}
@@ -227,9 +219,7 @@ class LegGraph:
     ) -> bool:
         """Return whether a break strands the release in any design.
 
-        This is so if the break divides the cluster of all remaining floats, or a short line between
-        this cluster and the release. `between` lists the kinds and roles that may lie between the
-        floats of a cluster.
+        `between` lists the kinds and roles of pieces that may lie between the floats of a cluster.
         """
         floats = {one for one in part if self._floats(one)}
         if not floats:
@@ -255,14 +245,9 @@ class LegGraph:
     def losses(self, whole: Leg) -> tuple[Loss, ...]:
         """Return the effect of losing each buoyant piece or clamp that surfaces, one at a time.
 
-        A lost element provides no buoyancy. If its mass and the density of its material are known,
-        the element is assumed to be flooded, and its weight in water counts; otherwise it is
-        assumed to be gone. Cables are never lost. The net forces of the other pieces do not change.
-
-        Parameters
-        ----------
-        whole : all pieces of the design as one leg, which supplies gravity and the limits of the
-            check
+        A lost element is assumed to be flooded if its mass and the density of its material are
+        known, and otherwise to be gone. Cables are never lost. `whole` contains all pieces of the
+        design as one leg, and supplies gravity and the limits of the check.
         """
         return tuple(
             loss for part in self._rising_parts(()) for loss in self._losses_of(part, whole)
@@ -317,7 +302,10 @@ def _weight_when_flooded(component: Component, gravity: float) -> float:
 def _required_margin(leg: Leg, weight: float, drag: float) -> float:
     """Return the net buoyancy required after a break [N].
 
-    `weight` is the weight in water [N], and `drag` the drag [N/(m/s)²], of the remaining section.
+    Parameters
+    ----------
+    weight : weight in water of the non-buoyant pieces that rise [N]
+    drag : drag of the rising pieces at 1 m/s [N/(m/s)²]
     """
     checks = leg.file.checks
     return max(checks.backup_margin * weight, drag * checks.minimum_rise_speed**2)

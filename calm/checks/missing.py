@@ -32,7 +32,7 @@ def alternatives(quantity: str) -> tuple[str, ...]:
 def missing(lacking: Mapping[tuple[str, str], Sequence[Finding]]) -> Iterator[Verdict]:
     """Yield one verdict per component id and missing value, for all findings that lack the value.
 
-    The message is taken from the finding with the largest value, such as the largest depth or load.
+    The message is that of the finding with the largest value, such as the largest depth or load.
     """
     for found in lacking.values():
         figure = found[0].missing
@@ -55,7 +55,7 @@ def missing(lacking: Mapping[tuple[str, str], Sequence[Finding]]) -> Iterator[Ve
 def is_lacking(finding: Finding) -> bool:
     """Return whether a finding is unknown because a value is missing.
 
-    An accepted finding has another state, so it does not count.
+    Accepted findings do not count.
     """
     return finding.state is State.UNKNOWN and finding.lacks is not None
 
@@ -65,11 +65,7 @@ def gathered(
 ) -> dict[tuple[str, str], list[Finding]]:
     """Group the findings that lack a value by component id and missing value.
 
-    Each finding in the result has the `MissingFigure` of its group.
-
-    Parameters
-    ----------
-    parts : pieces and clamps of the line, by label
+    Each finding gets the `MissingFigure` of its group. `parts` maps labels to pieces and clamps.
     """
 
     def value(finding: Finding) -> tuple[str, str]:
@@ -100,10 +96,8 @@ def with_missing(
 ) -> list[Finding]:
     """Replace the findings that lack a value with findings of the rule `missing`.
 
-    Parameters
-    ----------
-    parts : pieces and clamps of the line, by label
-    mooring, environment : names of mooring and environment in the findings of `missing`
+    `parts` maps labels to pieces and clamps. `mooring` and `environment` are the names in the new
+    findings.
     """
     every = list(findings)
     lacking = gathered(filter(is_lacking, every), parts)

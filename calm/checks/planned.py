@@ -17,18 +17,16 @@ from calm.files import MooringFile
 from calm.quantities import say
 
 SHARE_OF_THE_PLAN = 0.02
-"""Depth error that is always allowed for stretch and sounding, as a fraction of the planned
-depth.
-"""
+"""Depth error always allowed for stretch and sounding, as a fraction of the planned depth."""
 
 
 @dataclass(frozen=True)
 class PlannedPart:
-    """A piece or a clamp with a planned depth [m].
+    """Piece or clamp with a planned depth [m].
 
-    `least` and `most` are bounds on the depth of the part in still water. They differ only if the
-    line is slack in still water and has no unique shape. In that case, `least` is the depth in
-    the current, and `most` is the depth that the part would have on a straight vertical line.
+    `least` and `most` are bounds on the depth in still water. The bounds differ only for a line
+    that is slack in still water: from the depth in the current to the depth on a straight vertical
+    line.
     """
 
     row: ComponentRow | ClampRow
@@ -137,10 +135,10 @@ def _amount(least: float, most: float) -> str:
 
 
 def _remedy(result: LegResult, parts: Sequence[PlannedPart], number: int) -> str:
-    """Name the lengths to check for a part.
+    """Name the lengths to check for a part that is off its planned depth.
 
     The error lies between the last part with the same depth error and the next part with a
-    different depth error, in the direction of the fixed end.
+    different error, towards the fixed end.
     """
     above, allowed = (
         _hangs_from_above(result, parts[number]), result.file.checks.planned_depth_warning
@@ -159,7 +157,7 @@ def _remedy(result: LegResult, parts: Sequence[PlannedPart], number: int) -> str
 
 
 def _hangs_from_above(result: LegResult, part: PlannedPart) -> bool:
-    """Return whether the depth of a part is determined by the lengths above it.
+    """Return whether the lengths above a part determine its depth.
 
     This is so below a float at the surface, and above a piece that is cut to fit the top depth.
     """

@@ -36,9 +36,8 @@ AFLOAT_KEYS = ("hull", "k_surface", "wind_area", "heave")
 def reaches_the_surface(leg: Leg) -> bool:
     """Return whether the line is designed to have its float at the surface in still water.
 
-    A float whose definition has a key that only surface floats have is always intended for the
-    surface, even if its buoyancy is too small. A line that is longer than the water depth has no
-    unique shape in still water, and is treated as a line that reaches the surface.
+    This is true for any float with a key that only surface floats have. It is also true for a line
+    longer than the water depth.
     """
     if leg.for_surface is not None:
         return leg.for_surface
@@ -61,9 +60,8 @@ def left_out_of_a_leg(file: MooringFile) -> tuple[str, ...]:
 def tilt(leg: Leg) -> Iterator[Criterion]:
     """Check the tilt of instruments and releases against their own limits and the design's limit.
 
-    Typical limits of manufacturers are 27 degrees for an Aanderaa RCM (BODC), 30 degrees for a
-    single-point Doppler current meter, 45 degrees for a release, and 10 degrees for a sediment
-    trap. The limit for an ADCP is 20 degrees, and ADCP data are unreliable above 15 degrees.
+    Typical limits of manufacturers [degrees]: Aanderaa RCM 27 (BODC), single-point Doppler current
+    meter 30, release 45, sediment trap 10, ADCP 20 (its data are unreliable above 15).
     """
     design = leg.file.checks.maximum_tilt
     for part in parts_of(leg):
@@ -108,9 +106,8 @@ def _doubtful_words(
 def depth_rating(leg: Leg) -> Iterator[Criterion]:
     """Check that floats and instruments stay above their depth ratings by a margin.
 
-    Depths in the current are checked, because a float that is knocked down below its rating
-    implodes, and the line sinks. A surface float needs no depth rating; the rules `freeboard` and
-    `reserve` check whether a surface float is pulled under water.
+    The depths are those in the current: a float below its rating implodes, and the line sinks. A
+    surface float needs no depth rating.
     """
     margin, source = leg.file.checks.rating_margin, cited(leg.file, "rating_margin")
     for part in parts_of(leg):
@@ -290,7 +287,7 @@ def _of_the_top(
 def reserve(leg: Leg) -> Iterator[Criterion]:
     """Check the reserve buoyancy of the surface float, as a fraction of its total buoyancy.
 
-    The default limit of 0.3 is an allowance for waves, which a static solution does not include.
+    The default limit of 0.3 is an allowance for waves.
     """
     if not reaches_the_surface(leg):
         return
@@ -355,9 +352,8 @@ def watch_circle(result: LegResult) -> Iterator[Verdict]:
     """Check the watch-circle radius √(L² - h²) of a surface float.
 
     L is the line length from the float to the anchor, and h is the height of the surface above the
-    top of the anchor. The line is assumed to be taut, which is the worst case. PacIOOS, for
-    example, states a radius of 1.73 times the depth at a scope of 2. The limit is
-    `maximum_excursion`, if the design sets it.
+    top of the anchor. The limit is `maximum_excursion`, if the design sets it. PacIOOS states a
+    radius of 1.73 times the depth at a scope of 2.
     """
     limit = result.file.checks.maximum_excursion
     if not reaches_the_surface(result.leg):
@@ -378,7 +374,7 @@ def watch_circle(result: LegResult) -> Iterator[Verdict]:
 def scope(result: LegResult) -> Iterator[Verdict]:
     """Report the scope of a surface mooring, which is its cut length divided by the water depth.
 
-    There is no limit.
+    The scope has no limit.
     """
     if not reaches_the_surface(result.leg):
         return

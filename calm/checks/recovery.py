@@ -1,15 +1,12 @@
 """Recovery: rise speed of the line without its anchor, surfacing times and surfacing order.
 
-The release and everything above it rise together at terminal speed until the first buoyant piece
-reaches the surface. This piece and everything rigidly connected to it stay there. If the line below
-it is buoyant, it continues to rise as a separate line in still water. The part of this line that is
-already suspended from the surface is included, so the computed rise is too slow. Buoyant pieces
-surface one after another. Each rises by the length of the line between the previously surfaced
-piece and itself. All other pieces are suspended below the surfaced pieces.
+At first, the released line rises as a whole at its terminal speed. After each buoyant piece
+surfaces, the line below rises in still water at its own terminal speed. Pieces that cannot surface
+are suspended below the surfaced pieces.
 
-The model neglects acceleration, and treats surfaced floats as fully immersed. It assumes that no
-piece is carried past a piece above it in the line. If the line tangles during ascent
-(`Recovery.tangles`), the order may differ.
+The model neglects acceleration, and treats surfaced floats as fully immersed. The computed rise is
+too slow, because line suspended from the surface counts as part of the rising line. The order of
+surfacing may differ if the line tangles (`Recovery.tangles`).
 """
 
 from collections.abc import Iterator
@@ -33,20 +30,20 @@ from calm.solve import FreeMotion, Settings, part_of, plumb_speed, solve_rise
 class Recovery:
     """Rise of a line without its anchor, starting from the equilibrium of the mooring.
 
+    Tensions are NaN for pieces that do not rise, and arrival times for pieces that stay below.
+
     Attributes
     ----------
-    released : index of the lowest piece that rises: the lowest release, whose lower hook opens, or
-        the piece above the anchor if there is no release
-    rise_speed : terminal speed of the rising line, positive up [m/s]; 0 if it does not rise
-    net_buoyancy : net buoyancy of the rising line at its depths in equilibrium [N]
+    released : index of the lowest piece that rises: the lowest release, or the piece above the
+        anchor
+    rise_speed : terminal speed, positive up [m/s]; 0 if the line does not rise
+    net_buoyancy : net buoyancy of the rising line at the equilibrium depths [N]
     time_to_surface : time until the first buoyant piece surfaces [s]; None if no piece surfaces
-    tension_top, tension_bottom : (n,) tensions of the pieces above the anchor during the rise [N];
-        NaN for pieces that do not rise
-    arrival : (n,) time at which each piece surfaces [s]; NaN for a piece that stays below
+    tension_top, tension_bottom : (n,) tensions of the pieces above the anchor [N]
+    arrival : (n,) time at which each piece surfaces [s]
     order : indices of pieces that are buoyant enough to surface alone, in order of surfacing
-    tangles : indices of pieces that overtake, entirely or in part, pieces above them in the line
-    in_still_water : whether the rise was computed in still water, because the line doubles back
-        and has no steady motion in the current
+    tangles : indices of pieces that overtake pieces above them
+    in_still_water : whether the rise was computed in still water, without a solution in the current
     length : (m,) stretched lengths of the rising pieces [m]; empty if the line does not rise
     seabed : water depth [m]; NaN if the line does not rise
     """
@@ -72,9 +69,8 @@ class Recovery:
     def depth_at(self, piece: int, share: float) -> float:
         """Return the depth of a point on a piece at the end of the rise [m]; NaN if unknown.
 
-        The point is on the piece with the index `piece`, at the fraction `share` of the piece's
-        length from its upper end. The point is suspended from the surfaced piece that is nearest
-        along the line.
+        `share` is the distance of the point from the upper end, as a fraction of the length of the
+        piece.
         """
         up = np.isfinite(self.arrival[: len(self.length)])
         if piece >= len(up):
@@ -101,9 +97,7 @@ class Recovery:
 def recovery_of(leg: Leg, result: LegResult) -> Recovery:
     """Compute the rise of a mooring after its release, starting from its equilibrium.
 
-    Parameters
-    ----------
-    result : result of the mooring, which supplies depths and stretched lengths in equilibrium
+    `result` supplies the depths and stretched lengths in equilibrium.
 
     Raises
     ------
@@ -154,7 +148,7 @@ def recovery_of(leg: Leg, result: LegResult) -> Recovery:
 def lifts_of(line: Line, water: Water, result: LegResult) -> Floats:
     """Return the net forces (n,) of the pieces with their clamps, positive up [N].
 
-    The net forces are computed with the water densities at the equilibrium depths of the pieces.
+    The water densities are those at the equilibrium depths.
     """
     rows = slice(len(line.length))
     depth = 0.5 * (result.components.depth_top[rows] + result.components.depth_bottom[rows])
@@ -174,9 +168,11 @@ def _risers(
 ) -> Iterator[tuple[int, float]]:
     """Yield each piece that is buoyant enough to surface alone, and its surfacing time [s].
 
-    `length` are the stretched lengths [m] and `lifts` the net forces [N] of the pieces, both (n,).
-    The upper end of the line is at the depth `top` [m] and rises with `speed` [m/s] at first. The
-    line below a surfaced float rises vertically, as in still water.
+    Parameters
+    ----------
+    length, lifts : (n,) stretched lengths [m] and net forces [N] of the pieces
+    top : depth of the upper end of the line [m]
+    speed : initial rise speed [m/s]
     """
     time, up, count = 0.0, 0, len(length)
     for piece in np.flatnonzero(lifts > 0.0).tolist():

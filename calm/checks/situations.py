@@ -1,7 +1,6 @@
 """Situations of a mooring: its environment as given, or with one change.
 
-The changes are still water, tide, biofouling, strumming, profiler position, and the values as
-deployed. The rules on the strength of the currents and the depths they cover are here, too.
+The changes are those of `situations_of`. The module also contains the rules on currents.
 """
 
 from collections import deque
@@ -46,19 +45,17 @@ _AT_STOP, _AT_LEAN = "at its lower stop", "at its largest wire angle"
 
 
 def case_of(environment: int, situation: str) -> str:
-    """Return the code of a load case.
+    """Return the code of a load case, such as ``2s`` for strumming in the second environment.
 
-    Parameters
-    ----------
-    environment : number of the environment in file order, from 1
-    situation : name of the situation
+    Codes are the number of the environment (from 1, in file order) and a suffix:
 
-    Notes
-    -----
-    The code is 0 for still water, and 0l for still low water. For the unchanged mooring, the code
-    is the number of the environment. For other situations, the code is this number with a suffix: s
-    for strumming, g for growth, h for high water, l for low water, d for the mooring as deployed, p
-    for a profiler at its lower stop, and q for a profiler at the maximum wire angle.
+    - none: the unchanged mooring
+    - s, g: strumming, growth (biofouling)
+    - h, l: high water, low water
+    - d: as deployed
+    - p, q: profiler at its lower stop, or at the maximum wire angle
+
+    Still water has the code 0, and still low water 0l.
     """
     if situation in (STILL, STILL_LOW):
         return "0" if situation == STILL else "0l"
@@ -70,9 +67,7 @@ _NO_CURRENT = CurrentTable((0.0,), (0.0,), (0.0,), (0.0,))
 
 
 Situations = tuple[Situation, ...]
-"""One situation of a design, leg by leg. If the design has no solution, the tuple has a single
-entry.
-"""
+"""Solutions of a design in one situation, leg by leg; a single entry without an equilibrium."""
 
 
 def situations_of(design: Design) -> tuple[Situations, ...]:
@@ -80,16 +75,14 @@ def situations_of(design: Design) -> tuple[Situations, ...]:
 
     These situations are:
 
-    - still water;
-    - high water, low water and still low water, if the environment has a `depth_range`;
+    - still water, unless a surface line is slack there;
+    - high, low and still low water, if the environment has a `depth_range`;
     - profilers at their lower stops and at the position of maximum wire angle;
     - biofouling, if `fouling` is set;
-    - cables with Cn × 1.5, if no strumming law is in use;
+    - cables with Cn × 1.5, without a strumming law;
     - the depth and lengths of `deployed`, if they differ from the design.
 
-    In all situations, a fitted piece keeps the length that it has in the design as given. Still
-    water is omitted for a surface line that is longer than the water depth, because such a line is
-    slack and has no unique shape.
+    A fitted piece keeps the length that it has in the design as given.
     """
     given = solved(AS_GIVEN, design)
     if given[0].result is None:
@@ -107,7 +100,7 @@ def situations_of(design: Design) -> tuple[Situations, ...]:
 def solved(name: str, design: Design) -> Situations:
     """Solve a design, and return one situation with the given name for each leg.
 
-    Without an equilibrium, the result has a single situation, which contains the reason.
+    Without an equilibrium, a single situation contains the reason.
     """
 
     # environments of equal depth and density share the solution in still water
@@ -160,9 +153,9 @@ def _changed(
 
 
 def in_other_waters(file: MooringFile, water: Water) -> Iterator[tuple[str, MooringFile]]:
-    """Yield the name of each situation with changed water, and the file for this situation.
+    """Yield the name and the changed file of each situation with other water.
 
-    The situations are still water, still low water, high water and low water, as applicable.
+    These are still water, still low water, high water and low water, as applicable.
     """
     environment, tide = file.environment, file.environment.depth_range
     if water.moving or environment.wind is not None:
@@ -210,7 +203,7 @@ def as_deployed(design: Design) -> Design:
     UsageError
         The file has no key `deployed`.
     NoEquilibrium
-        The design has a fitted piece, and no length reaches its target depth.
+        No length of the fitted piece reaches its target depth.
     """
     file = design.file
     if file.deployed is None:
@@ -219,7 +212,7 @@ def as_deployed(design: Design) -> Design:
 
 
 def _deployed_file(file: MooringFile) -> MooringFile:
-    """Replace the values of a file with those under `deployed`; no piece may be cut to fit."""
+    """Replace the values of a file with those under `deployed`; the file has no fitted piece."""
     deployed = file.deployed
     assert deployed is not None
     items = {item.label: item for item in deployed.items}
@@ -247,10 +240,9 @@ def differs(designed: MooringFile, deployed: MooringFile) -> bool:
 
 @rule("as-deployed", once=True, case="d")
 def deployed_depth(handling: Handling) -> Iterator[Verdict]:
-    """Check the depth of the top of the line as deployed against its depth in the design.
+    """Check the depth of the top of the upright line, as deployed, against the design depth.
 
-    Both are depths in the upright line. For a surface mooring, the change in water depth is checked
-    instead.
+    For a surface mooring, the change in water depth is checked instead.
     """
     leg = handling.leg
     if leg.file.deployed is None:
@@ -357,7 +349,7 @@ WEAK_BESIDE_OTHERS = 0.02
 def currents(legs: Sequence[Leg]) -> Iterator[tuple[Leg, Verdict]]:
     """Check the strongest current, and report depths that current profiles do not cover.
 
-    `legs` contains one leg per environment. Yield each verdict with the leg in the affected
+    `legs` contains one leg per environment. Each verdict is yielded with the leg in the affected
     environment.
     """
     speeds = [float(np.hypot(each.water.u, each.water.v).max()) for each in legs]

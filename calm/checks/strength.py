@@ -28,9 +28,7 @@ WEIGHT_OF_A_HINGE = 0.5
 def allowable_load(component: Component, factors: SafetyFactors, surface: bool) -> float | None:
     """Return the allowable load of a component in service [N]; None without any load rating.
 
-    The allowable load is the smaller of the working load and the breaking load divided by the
-    safety factor. The factor for surface moorings applies if `surface` is true; otherwise the
-    factor for synthetic rope or for steel applies.
+    `surface` is true for a surface mooring. See `governing_load` and `safety_factor`.
     """
     return governing_load(component, 1.0, safety_factor(component, factors, surface))[0]
 
@@ -40,9 +38,9 @@ def governing_load(
 ) -> tuple[float | None, str]:
     """Return the allowable load [N], and the key of the load rating that governs it.
 
-    The allowable load is the smaller of working load × `working_factor` and breaking load /
-    `factor`. For a synthetic rope with both load ratings, only the breaking load counts. Return
-    None and "" if the component has no load rating.
+    This is the smaller of working load × `working_factor` and breaking load / `factor`. The working
+    load of a synthetic rope counts only without a breaking load. Without any load rating, the
+    result is None and "".
     """
     known, working = [], counted_working_load(component)
     if working is not None:
@@ -53,19 +51,15 @@ def governing_load(
 
 
 def wanted_load(component: Component) -> str:
-    """Return the key of the load rating to request for a component without any load rating.
-
-    This is `breaking_load` for cables and chains, and `working_load` for other components.
-    """
+    """Return the key of the load rating to request for a component without any load rating."""
     return "breaking_load" if isinstance(component, Flexible) else "working_load"
 
 
 def passes_load_on(file: MooringFile, index: int) -> bool:
     """Return whether the line tension passes through a piece.
 
-    The top piece, the anchor and a piece at the free end of a leg are loaded at one end only, and
-    the shackle next to them carries their load. The result is also False for a hinge without length
-    and weight, which occurs in designs from other programs.
+    The result is False for the top piece, the anchor, a piece at the free end of a leg, and a hinge
+    without length and weight.
     """
     piece = file.pieces[index]
     if piece.length == 0.0 and abs(piece.component.net_buoyancy) < WEIGHT_OF_A_HINGE:
@@ -97,9 +91,7 @@ def safety_factor_name(component: Component, surface: bool) -> str:
 def strength(leg: Leg) -> Iterator[Criterion]:
     """Compare the maximum tension in each piece with its allowable load.
 
-    The allowable load is the smaller of the working load and the breaking load divided by the
-    safety factor. The top piece and the anchor are checked only if they have a load rating, because
-    no tension passes through them.
+    The top piece and the anchor are checked only if they have a load rating.
 
     UFC 4-159-03 table 3-7 requires a factor of 3 on the breaking strength of new chain and wire.
     Oceanographic practice is 3 to 5, with the larger values for synthetic ropes and surface
@@ -141,11 +133,8 @@ def _strength_words(
 def load_text(part: JudgedPart | Piece, tension: float, when: str = "", bound: str = "") -> str:
     """Describe the load on a piece, such as ``Tension in wire 1 is 5.31 kN``.
 
-    Parameters
-    ----------
-    tension : load [N]
-    when : text that names the operation, such as " during the descent"
-    bound : " at most" if the load is an upper bound, otherwise empty
+    `when` names the operation, such as " during the descent". `bound` is " at most" for an upper
+    bound of the load.
     """
     what = "Tension in" if isinstance(part.component, Flexible) else "Load on"
     return f"{what} {part.label}{when} is{bound} {say('load', tension)}"
@@ -164,9 +153,8 @@ def no_load_known(load: str) -> tuple[str, str]:
 def release_load(leg: Leg) -> Iterator[Criterion]:
     """Check the load on every release, in service and at opening, against its rated loads.
 
-    At opening, a release carries the tension of the line below it, which must not exceed its
-    `opening_load`. If `opening_load` is unknown, the allowable load in service applies instead, and
-    the message mentions this.
+    At opening, a release carries the tension of the line below it. Without an `opening_load`, the
+    allowable load in service is the limit.
     """
     factors, surface = leg.file.checks.safety_factor, reaches_the_surface(leg)
     for part in pieces_of(leg):
@@ -205,13 +193,10 @@ def _release_words(
 
 @rule("strength-steps")
 def strength_steps(result: LegResult) -> Iterator[Verdict]:
-    """Report weak links in the line.
+    """Report weak links in the line, or the piece that comes closest to a weak link.
 
     A weak link has less than half the strength of the cables on both sides, and its tension exceeds
-    half of its own strength. A line of uneven strength carries unnecessary weight, and breaks at
-    its weak link. If there is no weak link, the piece that comes closest is reported. Chain is
-    excluded because it is oversized to allow for wear. Load ratings that are only lower bounds of
-    an estimate are excluded because they do not show the relative strength.
+    half of its own strength. Load ratings that are lower bounds of estimates are excluded.
     """
     factors, surface = result.file.checks.safety_factor, reaches_the_surface(result.leg)
     loads = [
@@ -248,11 +233,12 @@ def _is_estimated(component: Component) -> bool:
 def _steps(
     result: LegResult, loads: Sequence[float | None]
 ) -> Iterator[tuple[float, Piece, float, float]]:
-    """For each piece between two cables, compare its allowable load with the weaker cable.
+    """Compare each piece between two cables with the weaker cable.
 
-    Yield the ratio of the two loads, the piece, its allowable load [N], and the allowable load of
-    the cable [N].
+    Yield the ratio of the allowable loads of piece and cable, the piece, its allowable load [N],
+    and the allowable load of the cable [N].
     """
+    # a chain is no reference: it is oversized to allow for wear
     cables = [
         load if isinstance(piece.component, Cable) else None
         for piece, load in zip(result.file.pieces, loads, strict=False)
@@ -269,11 +255,10 @@ def _steps(
 def slack(leg: Leg) -> Iterator[Criterion]:
     """Check the minimum tension in each wire and rope above the release.
 
-    Without a release, the whole line is checked. A slack line wears, kinks and takes snap loads.
-    Mooring groups require about 500 to 1000 N above the release at slack water. No published rule
-    exists; the defaults are 500 N for wire and 300 N for rope. Pieces with ``slack: allowed`` and
-    line on the seabed are exempt. If the line above the release is shorter than `SHORT_LEAD`, its
-    tension depends on the floats alone, so only a limit that the design sets applies.
+    Without a release, the whole line is checked. Mooring groups require about 500 to 1000 N above
+    the release at slack water; the defaults are 500 N for wire and 300 N for rope. Pieces with
+    ``slack: allowed`` and line on the seabed are exempt. The defaults do not apply if the line
+    above the release is shorter than `SHORT_LEAD`.
     """
     file = leg.file
     lowest = len(file.pieces) - 1 if file.release is None else file.release
@@ -309,8 +294,8 @@ _UNKNOWN_WEIGHT = "the anchor's weight in water is unknown"
 def anchor_weight(leg: Leg) -> Iterator[Criterion]:
     """Check that the anchor's weight in water is at least factor × (V + H / friction).
 
-    V and H are the vertical and horizontal anchor load. This is Dewey's rule for deadweight
-    anchors, in which the factor is 1.5.
+    V and H are the vertical and horizontal anchor load. In Dewey's rule for deadweight anchors, the
+    factor is 1.5.
     """
     weight = _weight(leg)
 
@@ -400,7 +385,7 @@ rule satisfies all three rules in the same situation.
 def with_one_weight(
     findings: Iterable[Finding], governing: Mapping[Place | None, Finding]
 ) -> Iterator[Finding]:
-    """Yield the findings, after giving one remedy to all findings on an anchor that is too light.
+    """Yield the findings, with one common remedy for all findings on an anchor that is too light.
 
     The remedy states the largest required weight. `governing` is the result of `heaviest`.
     """
@@ -411,9 +396,9 @@ def with_one_weight(
 
 
 def heaviest(findings: Iterable[Finding]) -> dict[Place | None, Finding]:
-    """For each anchor that is too light, return the finding that requires the largest weight.
+    """Return, by place of the anchor, the finding that requires the largest weight.
 
-    The keys of the result are the places of the anchors.
+    Only findings on an anchor that is too light count.
     """
     found: dict[Place | None, Finding] = {}
     for one in findings:

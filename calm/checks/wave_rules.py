@@ -28,10 +28,9 @@ _SET_WAVES = "Set `waves:` in the environment: a design sea state, and a scatter
 
 @dataclass(frozen=True)
 class MooringInWaves:
-    """A mooring and its analysis in the waves of its environment.
+    """Mooring and its analysis in the waves of its environment.
 
-    `waves` is the analysis, or the reason why the analysis failed; None in an environment without
-    waves.
+    `waves` is the analysis, or the reason why the analysis failed; None without waves.
     """
 
     leg: Leg
@@ -53,9 +52,8 @@ class MooringInWaves:
 def wave_strength(evidence: MooringInWaves) -> Iterator[Verdict]:
     """Check the maximum tension of each piece in waves against its load ratings.
 
-    The limits are the working load of the piece, and its breaking load divided by the factor that
-    API RP 2SK requires for a dynamic analysis. The result is unknown for a surface mooring in an
-    environment without waves.
+    The breaking load is divided by the factor of API RP 2SK for a dynamic analysis. The verdict is
+    unknown for a surface mooring in an environment without waves.
     """
     leg, waves = evidence.leg, evidence.waves
     if not isinstance(waves, WaveAnalysis):

@@ -1,4 +1,4 @@
-"""Deck sheets of a mooring: parts with their depths, order of handling, and weights.
+"""Deck sheets of a mooring: pieces and clamps with their depths, order of handling, and weights.
 
 The class `Deck` is the common source of the printed sheets and of their files.
 """
@@ -37,21 +37,19 @@ from calm.files.mooring_file import leg_numbers
 from calm.solve import Status
 
 FAINT = 0.1
-"""Speed of the weak current in which the sheets show a line that is slack in still water [m/s]."""
+"""Speed of the weak current for the sheets of a line that is slack in still water [m/s]."""
 
 _Listed = TypeVar("_Listed")
 
 
 @dataclass(frozen=True)
 class RecoveredItem:
-    """A piece or clamp that rises after release; a list of such items is in order of surfacing.
+    """Piece or clamp that rises after release.
 
     Attributes
     ----------
-    item : the piece or clamp
-    time : time after release [s]; None if the part does not surface
-    hangs_at : depth of a clamp, or of the upper end of a piece, after all buoyant pieces have
-        surfaced [m]; None if unknown
+    time : time from release to surfacing [s]; None if the part stays below
+    hangs_at : final depth of a clamp, or of the upper end of a piece [m]; None if unknown
     by_itself : whether the part is buoyant enough to surface on its own
     """
 
@@ -68,11 +66,10 @@ class Lift:
     Attributes
     ----------
     index, label : index and label of the piece
-    mass : mass of the lift in air [kg]; None if a mass is unknown, and for a cable or chain, which
-        is paid out instead
-    weight : weight of the lift in water [N], positive down; None if a length is unknown
-    hanging : weight in water of everything over the side, including the lift [N], positive down and
-        negative if buoyant. This is the load on a winch that carries everything over the side
+    mass : mass in air [kg]; None if unknown, and for a cable or chain, which is not lifted
+    weight : weight in water [N], positive down; None if a length is unknown
+    hanging : weight in water of everything over the side, which is the winch load [N], positive
+        down
     """
 
     index: int
@@ -90,8 +87,7 @@ class Lifts:
     ----------
     deployment : lifts in the order in which they go over the side
     recovery : lifts from the top of the line down to the release
-    unknown : labels of all pieces and clamps whose mass in air is unknown; any of them may belong
-        to the heaviest lift
+    unknown : labels of all pieces and clamps of unknown mass
     """
 
     deployment: tuple[Lift, ...]
@@ -111,19 +107,15 @@ class Deck:
 
     Attributes
     ----------
-    result : result in the environment of the sheets
-    environment : name of this environment
-    order : deployment order
-    parts : every piece and clamp down the line, leg by leg in a net
-    deployment, recovery : parts in the order in which they go over the side, and in the order in
-        which they surface
-    rise : rise of the line without its anchor; None for a net, or if the rise could not be computed
-    cuts, hardware, shipped, lifts, instruments : contents of the sheets of the same names
-    plan : plan of the anchor drop, or the reason why it could not be computed; None for an
-        anchor-first deployment, and for a net
+    result, environment : result in the environment of the sheets, and name of this environment
+    parts : pieces and clamps down the line, leg by leg in a net
+    deployment, recovery : parts in the order in which they go over the side, and in order of
+        surfacing
+    rise : rise of the line without its anchor; None for a net, or without a solution
+    plan : plan of the anchor drop, or the reason why there is none; None for an anchor-first
+        deployment, and for a net
     environments : names of the environments in which the mooring has an equilibrium
     notes : missing information, with reasons
-    assessment : result of the design check
     """
 
     result: Result
@@ -154,8 +146,9 @@ class Deck:
         return item_numbers(self.result)
 
     def leg(self, index: int) -> str:
-        """Return the name of the leg that contains the piece with this index, or "" for a single
-        line.
+        """Return the name of the leg that contains a piece, or "" for a single line.
+
+        `index` is the index of the piece.
         """
         number = leg_numbers(self.file)[index]
         return self.result.legs[number].name if self.result.several else ""
@@ -181,18 +174,15 @@ def deck_of(
 
     Parameters
     ----------
-    moorings : the mooring in each environment, with equal cut lengths; the environment of the
-        sheets comes first
-    ship_speed, streamed, course : inputs of the anchor drop (see `calm.drop.drop_plan`) [m/s], [m],
-        [degrees]
+    moorings : the mooring in each environment, that of the sheets first, with equal cut lengths
+    ship_speed, streamed, course : inputs of `calm.drop.drop_plan` [m/s], [m], [degrees]
 
     Raises
     ------
     NoEquilibrium
         The mooring has no equilibrium in the first environment.
     UsageError
-        At `ship_speed`, the line does not stream behind the ship, or it cannot extend as far as
-        `streamed`.
+        The ship is too slow to stream the line, or the line is shorter than `streamed`.
     """
     first = moorings[0]
     notes: list[str] = []
@@ -285,14 +275,10 @@ def _name(mooring: Design) -> str:
 def surfacing(
     parts: Sequence[DeckItem], pieces: Collection[int], recovery: Recovery | None
 ) -> tuple[RecoveredItem, ...]:
-    """List the rising parts in order of surfacing. Parts that stay below the surface come last.
+    """List the rising parts in order of surfacing, followed by the parts that stay below.
 
-    If `recovery` is None, the times are None and the parts are in line order.
-
-    Parameters
-    ----------
-    parts : parts down the line
-    pieces : indices of the pieces that rise
+    Without a `recovery`, the times are None and the parts are in line order. `pieces` contains the
+    indices of the pieces that rise.
     """
     rising = [one for one in parts if one.index in pieces]
     if recovery is None:

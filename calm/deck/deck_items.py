@@ -22,25 +22,23 @@ _SIZE = re.compile(r"\d[\d/.-]* (?:mm|in)\b")
 
 @dataclass(frozen=True)
 class DeckItem:
-    """A piece, or an instrument clamped on a piece.
+    """Piece, or instrument clamped on a piece.
 
     Attributes
     ----------
-    part : piece or clamp in the mooring file
     index : index of the piece, or of the piece that carries the clamp
     on : label of the piece that carries the clamp; None for a piece
-    at : unstretched distance of a clamp from the upper end of its piece [m]; None for a piece
-    of_length : unstretched length of the piece that carries a clamp [m]
-    cut_length, stretched : unstretched and stretched length of a piece [m]; None for a clamp
+    at : unstretched distance of a clamp from the upper end of its piece [m]
+    of_length : unstretched length of the piece that carries the clamp [m]
+    cut_length, stretched : unstretched and stretched length of a piece [m]
     depth, height : depth, and height above the seabed, of a clamp or of the upper end of a piece
         [m]
     tilt : tilt from the vertical [degrees]
-    tension : maximum tension in a piece [N]; None for a clamp
-    serial : serial numbers in the design, separated by commas; None if unknown
-    deployed_serial, remark : serial numbers and remark in `deployed`; without an entry, the serial
-        numbers are those in the design
-    apart : whether connecting hardware is drawn in a separate row because it governs a check or has
-        an open finding
+    tension : maximum tension in a piece [N]
+    serial : serial numbers in the design, separated by commas
+    deployed_serial, remark : serial numbers (by default, those in the design) and remark in
+        `deployed`
+    apart : whether connecting hardware is drawn in a separate row because of the design check
     """
 
     part: Piece | Clamp
@@ -143,9 +141,8 @@ class DeckItem:
     def kind(self) -> tuple[object, ...]:
         """Key for grouping: consecutive items with the same key share a row.
 
-        Floats and clamps of the same component share a row. Cut pieces, items that hold an
-        instrument, releases, anchors, and all items with a serial number or a remark have separate
-        rows.
+        Cables, chains, anchors, releases, holders of instruments, and items with a serial number or
+        remark have separate rows.
         """
         alone = not self.is_rigid or self.holds_instrument or self.role == "anchor"
         return (self.label,) if alone or self._has_own_data else (self.name, self.on)
@@ -153,11 +150,11 @@ class DeckItem:
 
 @dataclass(frozen=True)
 class DeckRow:
-    """Items that share a printed row, such as glass floats on chain, or floats shackled together.
+    """Items that share a printed row, such as glass floats on chain.
 
     Attributes
     ----------
-    items : consecutive equal pieces, or consecutive equal clamps
+    items : consecutive equal pieces or clamps
     floats : equal floats clamped on the cable or chain in `items`
     between, after : hardware between the items, and after the last item
     """
@@ -226,11 +223,10 @@ def hardware_text(joints: Iterable[DeckItem]) -> str:
 
 
 def printed_rows(items: Sequence[DeckItem], *, drawn: bool = False) -> tuple[DeckRow, ...]:
-    """Group consecutive items into the rows in which they are listed or drawn, in line order.
+    """Group consecutive items into printed rows, in line order.
 
-    In a list, hardware is in the row of the preceding piece, even if clamps on this piece are
-    listed in between. In a drawing, hardware follows the clamps, and hardware marked as `apart` has
-    a separate row.
+    In a list, the hardware below a piece shares the row of the piece. In a drawing (`drawn`),
+    hardware follows the clamps, and hardware marked as `apart` has a separate row.
     """
 
     def is_joint(one: DeckItem) -> bool:
@@ -271,9 +267,7 @@ def _joined_clusters(rows: Sequence[DeckRow]) -> Iterator[DeckRow]:
 
 
 def _lies_on(run: tuple[DeckItem, ...], row: DeckRow, items: Sequence[DeckItem]) -> bool:
-    """Return whether `run` consists of equal floats and includes all clamps on the last piece of
-    `row`.
-    """
+    """Return whether `run` contains all clamps on the last piece of `row`, all equal floats."""
     first = run[0]
     if first.role != "float" or first.on is None or first.kind == (first.label,):
         return False
@@ -297,7 +291,7 @@ def name_of_run(items: Sequence[DeckItem]) -> str:
 def standing_out(findings: Iterable[Finding]) -> frozenset[str]:
     """Return the labels of parts that are drawn separately because of the design check.
 
-    These parts have an open finding, or they govern a check with a utilisation above `SHOWN_USE`.
+    These parts have an open finding, or govern a rule with a utilisation above `SHOWN_USE`.
     """
     every = [*findings]
     found = {one.component for one in governing_of_each_rule(every)
@@ -359,7 +353,7 @@ def _deck_item(
 
 @dataclass(frozen=True)
 class Extreme:
-    """Extreme depth [m] of a part, and the environment in which this depth occurs."""
+    """Extreme depth [m] of a piece or clamp, and the environment in which this depth occurs."""
 
     depth: float
     environment: str
@@ -367,14 +361,14 @@ class Extreme:
 
 @dataclass(frozen=True)
 class DeckInstrument:
-    """An instrument, a float or frame that holds an instrument, or a release.
+    """Instrument, release, or float or frame that holds an instrument.
 
     Attributes
     ----------
     item : the item in the environment of the sheets
-    still : depth in still water [m]; None if the line has no unique shape in still water
-    shallowest, deepest : extreme depths over all environments
-    greatest_tilt : maximum tilt over all environments [degrees]
+    still : depth in still water [m]; None if the shape in still water is not unique
+    shallowest, deepest, greatest_tilt : extreme depths, and maximum tilt [degrees], over all
+        environments
     """
 
     item: DeckItem
@@ -387,11 +381,10 @@ class DeckInstrument:
 def instruments_of(
     parts: Sequence[DeckItem], results: Sequence[tuple[str, Result]]
 ) -> tuple[DeckInstrument, ...]:
-    """List the instruments, the floats and frames that hold an instrument, and the releases, down
-    the line.
+    """List the instruments, holders of instruments, and releases, down the line.
 
-    `results` lists the name and the result of each environment; the environment of the sheets is
-    first.
+    `results` lists the name and the result of each environment, beginning with the environment of
+    the sheets.
     """
     rows = [(name, rows_by_place(result)) for name, result in results]
     found = []
@@ -424,8 +417,7 @@ class Order(StrEnum):
 def over_the_side(parts: Sequence[DeckItem], order: Order) -> tuple[DeckItem, ...]:
     """Sort the pieces in the order of deployment, each followed by its clamps.
 
-    In an anchor-first deployment, the lower end of a piece and its lowest clamp go over the side
-    first.
+    In an anchor-first deployment, the clamps of a piece are listed from the lowest up.
     """
     if order is Order.ANCHOR_LAST:
         return tuple(parts)

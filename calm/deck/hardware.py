@@ -19,7 +19,10 @@ from calm.files.pieces import parts_of
 from calm.solve import expect_many
 
 LENGTH_ERROR = 0.005
-"""Relative error of a cut length: the default tolerance, and the error whose effect is reported."""
+"""Relative error of a cut length.
+
+The value is the default tolerance, and the error whose effect on depth is reported.
+"""
 
 ORDINARY = 20
 """Number of pieces in a typical line, for estimates of computing time."""
@@ -32,8 +35,8 @@ LEAST_TOLERANCE = 0.02
 class Mark:
     """Mark on a cable, at the position of a clamp.
 
-    `label` is the label of the clamp. `at` is the distance of the mark from the upper end of the
-    cable [m], measured under the load `Cut.load`.
+    `label` is the label of the clamp. `at` is the distance from the upper end of the cable under
+    the load `Cut.load` [m].
     """
 
     label: str
@@ -42,21 +45,18 @@ class Mark:
 
 @dataclass(frozen=True)
 class Cut:
-    """A wire, a rope or a chain to be cut.
+    """Wire, rope or chain to be cut.
 
     Attributes
     ----------
-    item : the piece
-    length, load : length to measure [m], and load under which this length is measured [N]
+    length, load : length to measure [m], and load under which the length is measured [N]
     unstretched : length without load [m]
     marks : marks for the clamps, from the top of the cable down
-    termination : termination given in the file, or None
     tolerance : allowed error of the length [m]
-    effect : increase in depth of the top of the line or leg if the piece is longer by the fraction
-        `LENGTH_ERROR` [m]; None if the longer line has no equilibrium
-    over : number of a wire or rope in the order in which they go over the side; None for a chain
-    onto : number of a wire or rope in the reverse order, in which they are spooled onto the drum;
-        None for a chain
+    effect : increase in depth of the top if the piece is longer by the fraction `LENGTH_ERROR` [m];
+        None without an equilibrium
+    over, onto : number of a wire or rope in the order of deployment, and in the reverse order of
+        spooling; None for a chain
     """
 
     item: DeckItem
@@ -124,8 +124,9 @@ def _cut(result: Result, one: DeckItem, over: int | None, count: int) -> Cut:
 
 
 def _effect(result: Result, index: int, length: float) -> float | None:
-    """Compute the increase in depth of the top [m] if one piece is longer by the fraction
-    `LENGTH_ERROR`, in the same water.
+    """Compute the increase in depth of the top if one piece is longer by `LENGTH_ERROR` [m].
+
+    The result is None if the longer line has no equilibrium.
     """
     number = leg_numbers(result.file)[index]
     longer = result.design.with_length(index, length * (1.0 + LENGTH_ERROR))
@@ -159,15 +160,14 @@ _SMALL = frozenset({"shackles", "pins", "cotter pins", "thimbles"})
 
 @dataclass(frozen=True)
 class Stock:
-    """Connecting hardware of one kind and component: number of items that a line needs.
+    """Number of connectors or accessories of one component that a line needs.
 
     Attributes
     ----------
     kind : a member of `ORDER`
     use, name : id and name of the component; accessories have only a name
-    count : number in the line
     length : total length of chains [m]
-    basis : method by which the number is determined, if the item is not itself a piece of the line
+    basis : method of counting accessories
     """
 
     kind: str
@@ -181,7 +181,7 @@ class Stock:
     def spares(self) -> int:
         """Number of spares: `SPARE_SHARE` of `count`, rounded up.
 
-        The minimum is two spares for a small part, and one for any other part.
+        The minimum is two spares for a small item, and one for any other item.
         """
         return max(ceil(SPARE_SHARE * self.count), 2 if self.kind in _SMALL else 1)
 
@@ -194,9 +194,8 @@ class Stock:
 def hardware_of(legs: Sequence[Sequence[DeckItem]]) -> tuple[Stock, ...]:
     """List the connectors and chains of a line or of legs, with their accessories.
 
-    A shackle has a bolt with nut and cotter pin, unless its definition mentions a screw pin. A
-    cable whose termination mentions a thimble has a thimble at each end. Each contact of dissimilar
-    metals needs an isolator, and an anode for the less noble piece.
+    Accessories are the pins of shackles, the thimbles of cables, and isolators and anodes between
+    dissimilar metals.
     """
     parts = [one for leg in legs for one in leg]
     groups: dict[tuple[str, str], list[DeckItem]] = {}
@@ -276,14 +275,11 @@ class ShippedComponent:
 
     Attributes
     ----------
-    use, name, count : id and name of the component, and number of items
-    units : number of units; larger than `count` if the component has several units, such as a pair
-        of releases
+    count, units : number of items, and number of units in these items, such as 2 per pair of
+        releases
     length : total length of cable or chain [m]
-    mass : total of the known masses in air [kg]
-    volume : total of the known volumes, without packing [m³]
-    missing_masses, missing_volumes : number of unknown masses and number of unknown volumes; if any
-        are unknown, the total is a lower bound
+    mass, volume : totals of the known masses in air [kg] and volumes without packing [m³]
+    missing_masses, missing_volumes : numbers of unknown masses and volumes, which the totals omit
     """
 
     use: str
@@ -330,8 +326,8 @@ def all_shipped(shipped: Sequence[ShippedComponent]) -> ShippedComponent:
 def volume_of(component: Component, length: float | None) -> float | None:
     """Return the volume of a piece [m³], or None if unknown.
 
-    The volumes of spheres, cylinders and cables are computed from their dimensions; for other
-    pieces, the displaced volume is returned.
+    The dimensions of spheres, cylinders and cables determine their volume. The volume of any other
+    piece is its displaced volume.
     """
     if isinstance(component, Sphere):
         return pi * component.diameter**3 / 6.0

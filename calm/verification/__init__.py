@@ -1,7 +1,6 @@
 """Published and independently computed values that CALM must reproduce, for `calm verify`.
 
-Each `Source` holds the cases of one publication or derivation. The values are part of the code, so
-that no file is read.
+Each `Source` holds the cases of one publication or derivation.
 """
 
 from calm.verification import drag_and_sea_water

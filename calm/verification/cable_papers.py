@@ -1,8 +1,7 @@
 """Verification against publications on cables by Braconnot, Bourget & Marichal and Villain-Guillot.
 
-From Braconnot's charts (EDF), a buoy, towed cables and a point of the curve are compared; from
-Bourget & Marichal, a towed cable that strums; from Villain-Guillot, the closed form of a cable with
-linear drag.
+Braconnot: a buoy, towed cables and a chart curve. Bourget & Marichal: a towed cable that strums.
+Villain-Guillot: the closed form of a cable with linear drag.
 """
 
 from dataclasses import replace
@@ -52,9 +51,9 @@ BUOY_LIFT = _BUOY_TENSION * sin(_BUOY_ANGLE)
 
 @cache
 def _only(k: float, weight: float, **given: float) -> ChartSolution:
-    """Return the cable with three given quantities.
+    """Return the chart solution for a cable with three given quantities.
 
-    If there are several such cables, return the first, which lies above A everywhere.
+    Of several solutions, the first is returned, which lies above the lower end A everywhere.
     """
     answer = chart_solve(k, weight, **given)
     if not answer.solutions:
@@ -74,9 +73,7 @@ _below = partial(_only, _K, _TOW_WEIGHT)
 
 
 def buoy(buoyancy: float, depth: float) -> tuple[Line, Water]:
-    """Return the line and the water for a buoy on a cable.
-
-    The drag of the cable at 1 m/s is 12 N/m, which is K = 2.4 times the weight of the cable.
+    """Return the line and the water for a buoy on a cable with K = 2.4.
 
     Parameters
     ----------
@@ -306,7 +303,10 @@ _LENGTH, _UNIT = 1.25, 0.5
 
 @cache
 def _cable(start: float, mean: float) -> Station:
-    """Return the end of the cable under unit load, for the angles α₀ and α_d [degrees]."""
+    """Return the end of the cable under unit load.
+
+    `start` and `mean` are the angles α₀ and α_d [degrees].
+    """
     angle = radians(mean)
     return linear_cable(_LENGTH, _UNIT, radians(start), sin(angle), cos(angle))
 

@@ -1,8 +1,7 @@
 """Verification of the formulas for drag, strumming, sea water and gravity (C23).
 
-Drag coefficients of smooth cylinders and spheres are compared over the Reynolds number, and the
-increase of drag by strumming with three published fits. The last values are from the publication
-on the original CALM.
+The drag of smooth bodies is compared over the Reynolds number. The increase of drag by strumming is
+compared with three published fits.
 """
 
 from functools import partial

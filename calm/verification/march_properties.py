@@ -200,7 +200,7 @@ def _tension_by_height_and_friction() -> float:
 def _plumb() -> float:
     """Return the largest relative error of offset and tension in still water.
 
-    The exact tension is the sum of the loads above.
+    The exact tension is the net buoyancy of the line above.
     """
     water = replace(_SEA.still(), density=np.full(len(_SEA.level), REFERENCE_DENSITY))
     solution = solve_mooring(_LINE, water, _TIGHT)
@@ -289,7 +289,7 @@ def heavy_line_error(degrees: float) -> float:
 
     Parameters
     ----------
-    degrees : angle step of the march [degrees]
+    degrees : angle step of the integration along the line [degrees]
     """
     drag, rope = sphere_drag(1.0, 0.65), cable(LENGTH, 0.0127, _WEIGHT, 1.3, 0.01)
     line = line_of(point(_BUOYANCY, drag), rope)

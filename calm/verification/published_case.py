@@ -1,6 +1,6 @@
 """Cases of `calm verify`: expected values, their computation by CALM, and the comparison.
 
-The lines and waters of published cases are built here, without a mooring file.
+No mooring file is read; the lines and waters of published cases are built here.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ _MEANINGS = {
 
 @dataclass(frozen=True)
 class Case:
-    """A value to reproduce.
+    """Value to reproduce with CALM.
 
     Attributes
     ----------
@@ -67,8 +67,7 @@ class Case:
     unit : unit of `expected`, as text for a reader; empty for a pure number
     tolerance : largest allowed difference [unit], > 0
     why : reason for the tolerance, in a sentence
-    got : function that computes the value with CALM [unit]; an exception counts as a missing value
-    kind : origin of the expected value
+    got : function that computes the value with CALM [unit]
     """
 
     name: str
@@ -82,8 +81,7 @@ class Case:
     def check(self) -> CaseOutcome:
         """Compute the value with CALM, and return the outcome.
 
-        If the computation raises an exception, the outcome gives the exception as the reason for
-        the missing value.
+        An exception in the computation is the reason for a missing value.
         """
         try:
             return CaseOutcome(self, float(self.got()))
@@ -112,14 +110,11 @@ class CaseOutcome:
 
 @dataclass(frozen=True)
 class Source:
-    """The cases of one publication or derivation.
+    """Cases of one publication or derivation.
 
     Attributes
     ----------
-    title : short title of the source
-    text : who published or derived the values, which part of CALM is compared with them, and why
-        published values differ, if they do; Markdown, with blank lines between paragraphs
-    cases : the cases
+    text : origin of the values, compared part of CALM, and reasons for differences; Markdown
     picture : stem of the file name of a picture; empty if there is none
     """
 
@@ -131,8 +126,7 @@ class Source:
     def having(self, words: Iterable[str]) -> Source:
         """Return the source with only the cases that match a search.
 
-        Each of the given words, or parts of words, must occur in the title of the source or in the
-        name of the case.
+        Each of the given words must occur in the title of the source or in the name of the case.
         """
         wanted = [word.casefold() for word in words]
         chosen = tuple(
@@ -149,9 +143,8 @@ class CaseColumn(Generic[Solved]):
 
     Attributes
     ----------
-    name, unit : name and unit of the value
-    tolerance : largest allowed difference [unit]; a share of the value if `relative` is true
-    of : function that takes the value from the solution computed by CALM
+    tolerance : largest allowed difference [unit]; a fraction of the value if `relative` is true
+    of : function that extracts the value from a solution of CALM
     """
 
     name: str
@@ -172,9 +165,8 @@ def table(
     Parameters
     ----------
     figures : columns of the table
-    rows : for each row, its name, the function that computes the solution, and the published values
-    why : reason for the tolerances
-    kind : origin of the values
+    rows : name, function that computes the solution, and published values of each row
+    why, kind : as in `Case`
     """
 
     def case(
@@ -199,7 +191,7 @@ HALF_DENSITY = REFERENCE_DENSITY / 2.0
 
 @dataclass(frozen=True)
 class LinePiece:
-    """A piece of a line; attributes and units are those of `calm.physics.line.Line`.
+    """Piece of a line, with the attributes and units of `calm.physics.line.Line`.
 
     `clamps` lists, for each clamp, the distance from the upper end of the piece, the buoyancy, the
     volume and the drag.
@@ -242,8 +234,7 @@ def cable(
     ----------
     length, diameter : unstretched length and diameter [m]
     weight : weight in water [N/m]
-    cn : normal drag coefficient, referred to the diameter D
-    ct : tangential drag coefficient, referred to the surface π D
+    cn, ct : normal drag coefficient (reference area D × length), and tangential one (π D × length)
     compliance : strain per newton [1/N]
     """
     normal, tangential = HALF_DENSITY * diameter * cn, HALF_DENSITY * pi * diameter * ct
@@ -253,7 +244,7 @@ def cable(
 
 
 def line_of(*pieces: LinePiece, anchor_height: float = 0.0) -> Line:
-    """Return the line that consists of the given pieces, with the free end first."""
+    """Return a line of the given pieces, free end first."""
     held = [(owner, *clamp) for owner, piece in enumerate(pieces) for clamp in piece.clamps]
     clamps = np.array(held, dtype=np.float64).reshape(len(held), 5)
 
@@ -308,7 +299,7 @@ def deep_water(density: float = REFERENCE_DENSITY) -> Water:
 
 
 FINE = Settings(radians(0.1), tolerance=1e-9)
-"""Settings for values of seven digits; the error of the march is about 4e-8 of the length."""
+"""Solver settings for values of seven digits; the error is about 4e-8 of the length."""
 
 
 @dataclass(frozen=True)
@@ -317,9 +308,8 @@ class Ends:
 
     Attributes
     ----------
-    x, z : horizontal distance of the free end downstream of the lower end, and height of the free
-        end above the lower end [m]
-    horizontal, vertical : components of the force at the lower end, downstream and upward [N]
+    x, z : distance downstream and height of the free end, from the lower end [m]
+    horizontal, vertical : force at the lower end, positive downstream and upward [N]
     """
 
     x: float
@@ -349,9 +339,7 @@ def ends_of(solution: Solution) -> Ends:
 def finely(made: Callable[..., tuple[Line, Water]], *given: float) -> Ends:
     """Solve a line with the settings `FINE`, and return its ends.
 
-    Parameters
-    ----------
-    made : function that builds the line and the water from the values `given`
+    `made` builds the line and the water from the values `given`.
     """
     return ends_of(solve_mooring(*made(*given), FINE))
 
@@ -363,8 +351,7 @@ class Wake:
     Attributes
     ----------
     aft, depth : distances of the free end behind and below the tow point [m]
-    tension : tension at the tow point [N]
-    angle : angle of the line at the tow point from the horizontal [degrees]
+    tension, angle : tension [N], and angle from the horizontal [degrees], at the tow point
     frequency : strumming frequency [Hz]
     """
 
@@ -381,7 +368,6 @@ def towed(line: Line, water: Water, speed: float, settings: Settings = FINE) -> 
     Parameters
     ----------
     line : the line, from the ship to the free end
-    water : the water in which the line is towed
     speed : speed of the ship [m/s]
     settings : settings of the integration along the line
     """

@@ -1,7 +1,6 @@
 """Verification in still water: catenaries, an elastic rope, a slack line, and an anchor drop.
 
-The catenaries are C12 to C14. The rope (C15) hangs under its own weight and a load. The slack
-mooring (C22) has a watch circle.
+The case numbers are C12 to C14 (catenaries), C15 (rope) and C22 (watch circle of the slack line).
 """
 
 import re
@@ -282,9 +281,9 @@ def _plumb() -> float:
 
 @cache
 def _alone() -> float:
-    """Return the terminal speed of a heavy sphere on a light thread with a cork [m/s].
+    """Return the terminal speed of a heavy sphere [m/s].
 
-    The thread and the cork hardly affect the speed.
+    The sphere is on a light thread with a cork, which hardly affect the speed.
     """
     line = line_of(
         LinePiece(0.05, False, 1.0, 1e-3, directional=False), cable(300.0, 1e-6, 1e-6, 1.3, 0.0)

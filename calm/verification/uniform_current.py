@@ -1,8 +1,8 @@
 """Verification of lines in a uniform current, against closed forms and quadratures.
 
-C1 to C5 are a float on a thread, a neutral line and a heavy line. C7 and C8 are a bare cable towed
-at its critical angle and a cable that tows a body. C6 covers Pode's cable functions and their
-identities.
+- C1 to C5: a float or a ball on a thread, and a float on a rope
+- C6: Pode's cable functions and their identities
+- C7 and C8: a bare cable towed at its critical angle, and a cable that tows a body
 """
 
 from collections.abc import Callable, Iterable
@@ -64,12 +64,12 @@ def ball_on_a_thread() -> tuple[Line, Water]:
 
 
 def float_on_a_rope(weight: float, ct: float, speed: float) -> tuple[Line, Water]:
-    """Return the line and the water of case C3, C4 or C5.
+    """Return the line and the water of case C3, C4 or C5, a float on a rope.
 
     Parameters
     ----------
     weight : weight of the rope in water [N/m]
-    ct : tangential drag coefficient of the rope
+    ct : tangential drag coefficient
     speed : speed of the current [m/s]
     """
     return line_of(_FLOAT, cable(_LENGTH, 0.0127, weight, 1.3, ct)), stream(1010.0, speed)
