@@ -108,12 +108,9 @@ class CellRow(NamedTuple):
 
     Attributes
     ----------
-    path : path of the file
-    number : line number
-    line : original text of the line
-    cells : cells of the line, without the skipped cells at its start
-    dialect : dialect of the table
-    skipped : number of cells skipped at the start of the line
+    number, line : line number and original text
+    cells : cells without the skipped cells at the start of the line
+    skipped : number of skipped cells
     """
 
     path: Path
@@ -193,9 +190,8 @@ def read_table(path: Path, example: str, lines: Iterable[NumberedLine] | None = 
 
     Parameters
     ----------
-    path : path of the file
     example : sample header, for messages
-    lines : numbered lines of the file, if another reader has already split the file into lines
+    lines : numbered lines of the file, if the file is already split
 
     Raises
     ------
@@ -212,13 +208,12 @@ def read_table(path: Path, example: str, lines: Iterable[NumberedLine] | None = 
 def table_lines(
     path: Path, lines: Iterable[NumberedLine], example: str
 ) -> tuple[CellRow, Iterator[NumberedLine]]:
-    """Return the header of a table and an iterator over the lines below it.
+    """Return the header of a table, and an iterator over the lines below the header.
 
-    A first column without a heading holds row numbers, as written by R and pandas, and is skipped.
+    A first column without a heading, as written by R and pandas, is skipped.
 
     Parameters
     ----------
-    path : path of the file
     lines : all lines of the file
     example : sample header, for messages
 
@@ -250,9 +245,8 @@ def table_lines(
 def copied_table(text: str) -> CopiedTable:
     """Parse a table copied from a spreadsheet, a file or a web page.
 
-    The first line is a header unless one of its cells begins with a number.
-    `calm.records.profile_tables` interprets the cells. Raise NoTableError if there are no rows, or
-    if rows differ in length.
+    The first line is a header unless one of its cells begins with a number. Raise NoTableError if
+    there are no rows, or if rows differ in length.
     """
     lines = list(_content(enumerate(text.splitlines(), 1)))
     dialect = dialect_of([line.strip(" ") for _, line in lines])
@@ -286,14 +280,13 @@ def cells_in(text: str) -> list[list[str]]:
 def dialect_of(lines: Sequence[str], *, words: bool = False) -> Dialect:
     """Find the separator and the decimal symbol of a table.
 
-    The separator is the symbol that divides most lines into the same number of cells. The decimal
-    symbol is a comma if a number has a comma that cannot separate thousands, and no number has a
-    point.
+    The separator divides most lines into the same number of cells. The decimal symbol is a comma if
+    a comma cannot separate thousands and no number has a point.
 
     Parameters
     ----------
     lines : lines that are neither empty nor comments
-    words : whether cells may contain several words, so that blanks do not separate cells
+    words : whether cells may contain blanks, so that blanks do not separate cells
     """
     best, most = ",", 0
     for separator in _SEPARATORS:
@@ -390,9 +383,8 @@ _FORMULA = ("=", "+", "-", "@", "\t", "\n")
 def table_csv(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
     """Return a table as CSV text, with empty cells for None and NaN.
 
-    Numbers have at most twelve significant digits, to hide rounding noise. An apostrophe precedes
-    texts that begin with ``=``, ``+``, ``-`` or ``@``, which spreadsheets would interpret as
-    formulas.
+    Numbers have at most twelve significant digits. An apostrophe precedes texts that spreadsheets
+    would interpret as formulas.
     """
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")

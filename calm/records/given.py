@@ -30,14 +30,13 @@ def as_file(given: Given) -> Iterator[Path]:
 def as_files(given: Any, folder: Path, name: str) -> list[str]:
     """Write datasets and tables to a folder, and return the paths of all records.
 
-    A dataset must have the contents that CALM expects of a NetCDF file. A table must have the
-    columns that CALM expects of a CSV file. The index of a table may hold the times.
+    A dataset needs the contents of a NetCDF record, and a table the columns of a CSV record. The
+    index of a table may hold the times.
 
     Parameters
     ----------
-    given : a record, several records, or a mapping from labels to records; for a mapping, the texts
-        ``LABEL=PATH`` are returned
-    folder : folder in which the files are written
+    given : a record, several records, or a mapping from labels to records, which gives
+        ``LABEL=PATH``
     name : prefix of the file names
 
     Raises

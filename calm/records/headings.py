@@ -1,7 +1,7 @@
-"""Column headings of text tables: a name and its unit, in the common notations.
+"""Column headings of text tables: a name and its unit, in common notations.
 
 Examples are ``depth[m]``, ``Depth (m)``, ``depth m``, ``toward[deg magnetic]`` and ``time (UTC)``.
-A name of several words needs brackets around its unit, or a known unit.
+After a name of several words, the unit must be in brackets or a known unit.
 """
 
 import re
@@ -28,9 +28,8 @@ _MAGNETIC = re.compile(r"(?i)\s*\bmag(netic)?$")
 def heading(column: str, dimensions: Sequence[str] = ()) -> tuple[str, str]:
     """Split a heading into its name and its unit; a missing unit is empty.
 
-    The unit is in brackets. If `dimensions` (keys of `calm.units.DIMENSIONS`) are given, a unit
-    without brackets is also found: the name ends where a known unit begins, preferably a unit of
-    one of these dimensions.
+    The unit is in brackets. If `dimensions` (keys of `calm.units.DIMENSIONS`) are given, a known
+    unit without brackets is also found, preferably of one of these dimensions.
     """
     text = " ".join(column.split())
     bracketed = _BRACKETED.fullmatch(text)
@@ -57,20 +56,19 @@ def column_unit(
 ) -> tuple[str, float]:
     """Return the dimension of a column, and the factor from its unit to SI (degrees for angles).
 
-    Latitudes and longitudes need no unit. They are in degrees, or in degrees and minutes.
+    Latitudes and longitudes need no unit.
 
     Parameters
     ----------
     column : heading of the column, for messages
-    unit : unit in the heading; empty if the heading has none
+    unit : unit in the heading, or empty
     dimensions : allowed dimensions, keys of `calm.units.DIMENSIONS`
     usual : unit to suggest; by default the SI unit
 
     Raises
     ------
     QuantityError
-        The unit is missing, unknown or of another dimension. The text of the error is a complete
-        message.
+        The unit is missing, unknown or of another dimension. The text is a complete message.
     """
     name = heading(column, dimensions)[0]
     if not unit and dimensions[0] in HEMISPHERES:
@@ -139,11 +137,10 @@ class NamedColumns:
 
     Attributes
     ----------
-    factors : factor that converts a known column to SI units (degrees for angles), by name
-    places : index of each known column in a row, by name
+    factors : factor to SI units (degrees for angles), by column name
+    places : index of the cell in a row, by column name
     rows : rows with as many cells as the header
-    others : headings of the other columns
-    header : header of the table
+    others : headings of the unknown columns
     """
 
     factors: Mapping[str, float]
@@ -164,9 +161,9 @@ class TimeColumns:
 
     Attributes
     ----------
-    time : (n,) increasing times, to the nanosecond
+    time : (n,) increasing times
     names : label of each of the c columns
-    dimensions : dimension of each column, as a key of `calm.units.DIMENSIONS`
+    dimensions : dimension of each column, a key of `calm.units.DIMENSIONS`
     values : (n, c) values in SI units; NaN in gaps
     """
 
@@ -183,13 +180,12 @@ def read_named_columns(
     *,
     other_names: Mapping[str, str] = MappingProxyType({}),
 ) -> NamedColumns:
-    """Find the known columns of a table; mistakes in headings and rows are added to `problems`.
+    """Find the known columns of a table by name.
 
     Parameters
     ----------
-    table : table of a file
     known : dimension of each known column by name; spaces in headings are read as underscores
-    problems : list to which mistakes are added
+    problems : list to which mistakes in headings and rows are added
     other_names : known name for each alternative name of a column
     """
     header = table.header
@@ -218,14 +214,13 @@ def read_time_columns(path: Path, dimensions: Sequence[str], example: str) -> Ti
 
     Parameters
     ----------
-    path : path of the table
     dimensions : allowed dimensions of the columns, keys of `calm.units.DIMENSIONS`
     example : sample heading, for messages
 
     Raises
     ------
     InputError
-        The table has mistakes; the error lists all of them.
+        The table has mistakes; up to `MOST_PROBLEMS` of them are listed.
     """
     table = delimited.read_table(path, f"time,{example}")
     header = table.header

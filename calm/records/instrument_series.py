@@ -1,8 +1,7 @@
 """Time series from the instruments of a mooring: temperature, salinity, velocity.
 
-A file holds either several instruments along a dimension, as for `calm motion`, or a single
-instrument, as in archives (OceanSITES, IMOS). The file identifies an instrument by a label, a
-serial number or a nominal depth.
+A file holds a single instrument, or several instruments along a dimension. An instrument has a
+label, a serial number or a nominal depth.
 """
 
 from __future__ import annotations
@@ -56,7 +55,7 @@ class Identity:
 
     Attributes
     ----------
-    label, serial : label and serial number; empty if missing in the file
+    label, serial : empty if missing in the file
     nominal : nominal depth [m]; NaN if missing in the file
     source : name of the file
     """
@@ -83,14 +82,13 @@ class InstrumentSeries(Identity):
 
     Attributes
     ----------
-    time : (n,) increasing times, to the nanosecond
+    time : (n,) increasing times
     value : (n,) values in the unit of the quantity; NaN if missing or rejected by a flag
     dropped : number of readings rejected by their flags
     below : distance of a profiler's bin below the profiler [m]; 0 for other instruments
-    note : remarks on doubts and assumptions
-    card : summary card of the file
+    note : doubts and assumptions
     pressure : median pressure in the file [dbar]; NaN without pressures
-    called : label stated in the file, even if the user gives another label; empty if missing
+    called : label stated in the file, also if the user gives another label
     """
 
     time: NDArray[np.datetime64]
@@ -103,18 +101,17 @@ class InstrumentSeries(Identity):
     called: str = ""
 
     def checked(self, quantity: str, variable: str, notes: Sequence[str] = ()) -> InstrumentSeries:
-        """Return the series with NaN in place of impossible values, and doubts added to its note.
+        """Return the series with impossible values set to NaN and doubts added to `note`.
 
         Parameters
         ----------
-        quantity : name of the quantity
-        variable : name of the source variable
+        variable : name of the variable in the file
         notes : further remarks
 
         Raises
         ------
         UnreadableError
-            Most values are impossible for sea water, so the unit must be wrong.
+            Most values are impossible for sea water.
         """
         value, remarks = self.value, [*notes]
         if quantity in WATER:
@@ -139,16 +136,20 @@ def read_series(
     seabed: float,
     usual: Mapping[str, float] = MappingProxyType({}),
 ) -> dict[str, list[InstrumentSeries]]:
-    """Read time series from files, and return a list of series for each quantity name.
+    """Read time series of several quantities from files.
 
     Parameters
     ----------
     given : paths of files, ``LABEL=PATH`` for a file of one instrument, or folders of such files
-    names : names of the quantities, keys of `QUANTITIES_MEASURED`
-    flags : accepted quality flags, for files with flags; 8 is never accepted
-    seabed : water depth, to convert nominal heights above the seabed [m]; NaN if unknown
-    usual : depth of each part of the line by label [m], for files that have neither pressures nor a
-        nominal depth
+    names : keys of `QUANTITIES_MEASURED`
+    flags : accepted quality flags; flag 8 is never accepted
+    seabed : water depth [m], to convert heights above the seabed; NaN if unknown
+    usual : depth [m] by label, for files that have neither pressures nor a nominal depth
+
+    Returns
+    -------
+    dict
+        Series by quantity name.
 
     Raises
     ------
@@ -177,9 +178,9 @@ def read_series(
 
 
 def files_given(given: Sequence[str]) -> list[tuple[str, Path]]:
-    """Return pairs of label and path for all files given; the label is empty if none is given.
+    """Return the label and the path of each file given; the label may be empty.
 
-    A folder stands for the data files in it. Raise InputError if a file does not exist, or if a
+    A folder stands for the data files in the folder. Raise InputError if a file is missing, or if a
     folder has no data files.
     """
     found: list[tuple[str, Path]] = []
@@ -251,15 +252,13 @@ def _opened(path: Path) -> Iterator[xr.Dataset]:
 
 
 def instruments_apart(dataset: xr.Dataset) -> list[xr.Dataset]:
-    """Split a dataset in which the readings of several instruments share one dimension.
+    """Split a dataset of several instruments into one dataset per instrument.
 
-    In the indexed ragged arrays of CF, a variable with the attribute `instance_dimension` gives the
-    instrument of each reading, as in the aggregated and hourly products of IMOS. In contiguous
-    ragged arrays, a variable with the attribute `sample_dimension` gives the number of readings of
-    each instrument. Readings without an instrument are excluded. A dataset with neither variable is
-    returned unsplit.
+    The dataset must be a ragged array of CF, indexed (`instance_dimension`) or contiguous
+    (`sample_dimension`). Any other dataset is returned unsplit. Readings without an instrument are
+    excluded.
 
-    Raise UnreadableError if such a variable does not fit the dimensions.
+    Raise UnreadableError if the index or the counts do not fit the dimensions.
     """
     for name, index in dataset.variables.items():
         instances = index.attrs.get("instance_dimension")
@@ -399,10 +398,10 @@ class _SeriesFile:
 
 
 def conductivity_in(dataset: xr.Dataset) -> dict[str, str]:
-    """Return the names of the variables from which salinity can be computed, by quantity name.
+    """Return the names of the variables for computing salinity, by quantity name.
 
-    The quantities are conductivity, temperature and, if present, pressure. The result is empty
-    unless the dataset has both conductivity and temperature.
+    The quantities are conductivity, temperature and, optionally, pressure. Without conductivity or
+    temperature, the result is empty.
     """
     temperature = QUANTITIES_MEASURED["temperature"]
     sought = {
@@ -424,7 +423,7 @@ def practical_salinity(
     ----------
     taken : variables as returned by `conductivity_in`
     values : values of these variables, in the units of the file and with equal shapes
-    depth : depth used if a pressure is missing [m]; an error of 10 m changes salinity by 0.004
+    depth : depth [m], used if a pressure is missing
     """
     import gsw
 
@@ -467,11 +466,14 @@ def _decibars(variable: xr.DataArray, values: Floats) -> Floats:
 def named(dataset: xr.Dataset, sought: Sequence[str], usual: Sequence[str]) -> list[str]:
     """Return the names of the variables of a quantity.
 
-    These are the variables with the first standard name of `sought` that occurs in the dataset. If
-    any of these variables has a name in `usual`, only such variables are returned. If no standard
-    name occurs, the variables with a name in `usual` are returned. Raise UnreadableError if several
-    variables have the standard name and none of them has a usual name, or if a variable with a
-    usual name has another standard name.
+    The first standard name of `sought` that occurs in the dataset takes precedence over the names
+    in `usual`. Names in `usual` choose between several variables with this standard name.
+
+    Raises
+    ------
+    UnreadableError
+        Several variables share the standard name and none has a usual name, or a variable with a
+        usual name has another standard name.
     """
     there = _standard(dataset, sought)
     known = [one for one in usual if one in (there or dataset.data_vars)]
@@ -505,7 +507,7 @@ class Readings:
     along : dimension of the instruments; None for a single instrument
     values : (n, k) values of each variable, in the units of the file
     dropped : (n, k) mask of readings rejected by a flag of any variable
-    clock : name and unit of the times
+    clock : name and unit of the time variable
     flags : number of rejected readings by flag variable
     """
 
@@ -531,8 +533,7 @@ def readings(dataset: xr.Dataset, names: Sequence[str], flags: frozenset[int]) -
 
     Parameters
     ----------
-    names : names of the variables
-    flags : accepted quality flags; 8 is never accepted
+    flags : accepted quality flags; flag 8 is never accepted
 
     Raises
     ------
@@ -602,7 +603,7 @@ def who_along(dataset: xr.Dataset, along: str | None, seabed: float, source: str
     Parameters
     ----------
     along : dimension of the instruments; None for a file of one instrument
-    seabed : water depth, to convert heights above the seabed [m]
+    seabed : water depth [m], to convert heights above the seabed
     source : name of the file
     """
     if along is None:

@@ -37,15 +37,12 @@ _STANDARD_DEPTH = "depth"
 class LevelDepths:
     """Levels of a current at depths ``start + factor * variable``, positive down [m].
 
-    If `instrument` is set, the depth of the instrument is added.
-
     Attributes
     ----------
     variable : level variable; all its dimensions are dimensions of the velocity
     factor : signed factor to metres; negative if values increase upwards
     start : depth at which the values are zero [m]
-    instrument : depth variable of the instrument from which levels are counted, and its factor to
-        metres
+    instrument : variable for an instrument depth to add, and its factor to metres; or None
     notes : remarks on assumptions
     """
 
@@ -83,22 +80,17 @@ class LevelDepths:
 def find_levels(
     dataset: xr.Dataset, level: str | None, time: str | None, water_depth: float
 ) -> LevelDepths:
-    """Find the levels of a velocity.
-
-    If a file describes both moving and fixed levels, the moving levels are used.
+    """Find the depths of the levels of a velocity; moving levels take precedence over fixed ones.
 
     Parameters
     ----------
-    dataset : dataset of the velocity
-    level : level dimension of the velocity; None if the velocity has no such dimension
-    time : time dimension of the velocity; None if the velocity has no such dimension
-    water_depth : water depth, to convert heights above the seabed [m]
+    level, time : level and time dimensions of the velocity; None if missing
+    water_depth : water depth [m], to convert heights above the seabed
 
     Raises
     ------
     UnreadableError
-        There are no levels, or the file does not state whether values increase upwards or
-        downwards.
+        There are no levels, or it is unclear whether their values increase upwards or downwards.
     """
     standard, wanted = dataset.cf.standard_names, {level} - {None}
     names = [

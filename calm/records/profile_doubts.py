@@ -34,7 +34,7 @@ are shallower."""
 
 
 def direction_doubts(directions: Sequence[float], name: str) -> Iterator[str]:
-    """Yield a remark if directions appear to be in radians, or to be northward velocities.
+    """Report directions that appear to be in radians, or to be northward velocities.
 
     Parameters
     ----------
@@ -58,9 +58,7 @@ def direction_doubts(directions: Sequence[float], name: str) -> Iterator[str]:
 
 
 def profile_doubts(depth: Floats, u: Floats, v: Floats, water_depth: float) -> Iterator[str]:
-    """Yield remarks on doubtful levels of one profile.
-
-    The remarks do not end with a full stop.
+    """Report doubtful levels of one profile, in sentences without a full stop.
 
     Parameters
     ----------
@@ -100,7 +98,7 @@ def _between(one: float, other: float) -> float:
 
 
 def strength_doubts(depth: Floats, speed: Floats, water_depth: float) -> Iterator[str]:
-    """Yield a remark if currents are stronger than any currents measured in deep water.
+    """Report currents that are stronger than any measured in deep water.
 
     Parameters
     ----------

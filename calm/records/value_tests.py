@@ -1,7 +1,6 @@
-"""General tests of measured values, which yield sentences about suspicious values.
+"""Tests that report suspicious measured values as sentences.
 
-The tests use values alone and ignore free text. They do not exclude or reject values, but leave
-this decision to the user.
+The tests neither exclude nor reject values.
 """
 
 from __future__ import annotations
@@ -49,7 +48,7 @@ _FEET = 0.3048
 
 @dataclass(frozen=True)
 class CurrentValues:
-    """Currents of a record, as input to the tests for doubtful values.
+    """Currents of a record: n profiles with k levels.
 
     Attributes
     ----------
@@ -57,8 +56,7 @@ class CurrentValues:
     u, v : (n, k) eastward and northward components [m/s]; NaN in gaps
     times : (n,) increasing times; None for a single profile
     water_depth : water depth [m]; inf if unknown
-    unit : declared unit of speed
-    factor : factor from this unit to m/s
+    unit, factor : declared unit of speed, and the factor from this unit to m/s
     good : (n, k) share of good pings; None if unknown
     """
 
@@ -101,7 +99,7 @@ def current_doubts(found: CurrentValues) -> Iterator[str]:
 
 
 def level_doubts(depth: Floats, known: NDArray[np.bool_], water_depth: float) -> Iterator[str]:
-    """Yield doubts about levels below the seabed, levels without values, and depths without levels.
+    """Report levels below the seabed, levels without values, and depth ranges without levels.
 
     Parameters
     ----------
@@ -150,7 +148,7 @@ def left_out(top: float, bottom: float, water_depth: float, what: str = "current
 
     Parameters
     ----------
-    top, bottom : depths of the first and last level of the profile [m]
+    top, bottom : depths of the first and the last level [m]
     water_depth : water depth [m]; inf if unknown
     what : quantity of the profile
     """
@@ -167,7 +165,7 @@ def left_out(top: float, bottom: float, water_depth: float, what: str = "current
 
 
 def speed_doubts(speed: Floats, unit: str = "m/s", factor: float = 1.0) -> Iterator[str]:
-    """Yield a doubt if all speeds are so small that the declared unit is probably wrong.
+    """Report speeds that are all so small that the declared unit is probably wrong.
 
     Parameters
     ----------
@@ -189,7 +187,7 @@ def speed_doubts(speed: Floats, unit: str = "m/s", factor: float = 1.0) -> Itera
 
 
 def sector_doubts(u: Floats, v: Floats) -> Iterator[str]:
-    """Yield a doubt if the directions of all currents are in a narrow sector that begins at north.
+    """Report currents whose directions are all in a narrow sector that begins at north.
 
     Parameters
     ----------
@@ -252,7 +250,7 @@ _ALIKE, _UNLIKE = 0.8, 0.5
 
 
 def _turned_levels(depth: Floats, current: NDArray[np.complex128]) -> Iterator[str]:
-    """Yield a doubt about levels whose currents match both neighbours only if rotated or mirrored.
+    """Report levels whose currents match both neighbours only after a rotation or a reflection.
 
     Parameters
     ----------
@@ -289,13 +287,13 @@ def _turned_levels(depth: Floats, current: NDArray[np.complex128]) -> Iterator[s
 
 
 def series_doubts(values: Floats, times: Times, names: Sequence[str] = ("",)) -> Iterator[str]:
-    """Yield doubts about times, gaps, and constant or repeated values of time series.
+    """Report doubtful times, gaps, and constant or repeated values of time series.
 
     Parameters
     ----------
     values : (n, k, c) values of c components in k series; NaN in gaps
     times : (n,) increasing times
-    names : (k,) place of each series for the messages, such as " at 20 m"; "" for a single series
+    names : (k,) text for each series in the messages, such as " at 20 m"
     """
     yield from _years(times)
     again = int((times[1:] == times[:-1]).sum())
@@ -352,12 +350,17 @@ _FRACTION = 0.05  # most salinities lie below this if they are mass fractions
 
 
 def impossible_values(name: str, values: Floats) -> tuple[NDArray[np.bool_], str, bool]:
-    """Find impossible values; return their mask, a message, and whether most values are impossible.
+    """Find values that are impossible for sea water.
 
     Parameters
     ----------
     name : key of `WATER`
     values : values in the unit of the quantity; NaN in gaps
+
+    Returns
+    -------
+    tuple
+        Mask of the impossible values, a message, and whether most values are impossible.
     """
     limits, known = WATER[name], values[np.isfinite(values)]
     wrong = (values < limits.least) | (values > limits.greatest)
@@ -382,14 +385,14 @@ def impossible_values(name: str, values: Floats) -> tuple[NDArray[np.bool_], str
 
 
 def exchanged_pair(values: Floats) -> tuple[int, int] | None:
-    """Find two levels whose exchange makes a profile monotonic.
+    """Find the only two levels whose exchange makes a profile monotonic.
 
-    Return None if the profile is already monotonic, if no pair of levels has this effect, or if
-    several pairs have this effect.
+    Return None if the profile is already monotonic, if no or more than one pair fits, or if there
+    are fewer than four levels or a NaN.
 
     Parameters
     ----------
-    values : mean value at each level, from top to bottom; at least four levels
+    values : mean value at each level, from top to bottom
     """
     if len(values) < 4 or not np.isfinite(values).all():
         return None
@@ -497,7 +500,7 @@ def _interleaved(values: Floats) -> Iterator[str]:
 
 
 def _repeated(values: Floats, times: Times) -> Iterator[str]:
-    """Yield a doubt about the longest run of readings that occurs twice with equal digits."""
+    """Report the longest run of readings that occurs twice with equal digits."""
     count = len(values) - _STRETCH + 1
     if count <= _STRETCH:
         return

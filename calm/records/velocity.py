@@ -70,10 +70,8 @@ class Velocity:
     ----------
     names : eastward and northward velocity, or speed and direction
     up : upward velocity; None if missing
-    turn : angle to add to the direction variable to get the direction of flow [degrees]; None if
-        `names` are components
-    magnetic : whether the file states that directions are relative to magnetic north
-    true : whether the file states that directions are relative to true north
+    turn : angle [degrees] from the direction variable to the direction of flow; None for components
+    magnetic, true : whether the file states that directions refer to magnetic or to true north
     notes : remarks on assumptions
     """
 
@@ -105,8 +103,8 @@ class Velocity:
 def find_velocity(dataset: xr.Dataset, *, regular: bool) -> Velocity:
     """Find the velocity variables of a dataset.
 
-    Raise UnreadableError if there is no current, if there are several currents, or if the
-    components are not eastward and northward.
+    Raise UnreadableError if there is no current or more than one, or if the components are not
+    eastward and northward.
 
     Parameters
     ----------
@@ -215,10 +213,9 @@ def _checked(dataset: xr.Dataset, name: str) -> str:
 
 
 def layers_of(dataset: xr.Dataset) -> set[str]:
-    """Return the names of coordinates that describe layers, and the names of their dimensions.
+    """Return the names of layer coordinates, and the names of their dimensions.
 
-    A coordinate that describes layers has the attribute `bounds`. A mean over a layer is accepted
-    as the value of this layer.
+    A layer coordinate has the attribute `bounds`. Means over its layers count as values.
     """
     bounded = [name for name, one in dataset.variables.items() if "bounds" in one.attrs]
     return {str(each) for name in bounded for each in (name, *dataset[name].dims)}
@@ -255,9 +252,9 @@ _DIRECTIONS = "dir"
 def with_components(dataset: xr.Dataset) -> xr.Dataset:
     """Return the dataset with a velocity `vel (dir, ...)` split into its components.
 
-    The components are called ``vel[E]``, ``vel[N]`` and so on, and have the standard names of
-    eastward, northward and upward velocity. A dataset without such a variable is returned
-    unchanged. Raise UnreadableError if the components are along beams or instrument axes.
+    The components are called ``vel[E]``, ``vel[N]`` and ``vel[U]``, with CF standard names. Any
+    other dataset is returned unchanged. Raise UnreadableError if the components are along beams or
+    instrument axes.
     """
     vectors = [name for name in _NAMES if name in dataset.data_vars]
     name = next((name for name in vectors if _DIRECTIONS in dataset[name].dims), None)
@@ -357,9 +354,8 @@ _GOOD_NAMES = re.compile(r"(?i)(perg|pg|pgd|percent_?good|prcnt_gd|pct_good)_?[1
 def good_variables(dataset: xr.Dataset, name: str) -> list[xr.DataArray]:
     """Return the variables whose sum is the share of good pings for a velocity.
 
-    If a variable has one value per beam, the values of the first and the fourth beam are returned.
-    In earth coordinates, the first value is the share of three-beam solutions, and the fourth value
-    is the share of four-beam solutions.
+    Of a variable with four beams, only the first and fourth values are returned. In earth
+    coordinates, the two values are the shares of three-beam and four-beam solutions.
     """
     dims = set(dataset[name].dims)
     there = [
