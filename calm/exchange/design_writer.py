@@ -208,7 +208,7 @@ def figure_text(key: str, value: model.FigureOrWord, *, per_metre: bool, in_kilo
 
     Parameters
     ----------
-    key : name of the field in the component
+    key : name of the field
     value : value in SI units, or a word
     per_metre : whether forces and masses are per metre
     in_kilograms : whether forces are shown in kilograms-force

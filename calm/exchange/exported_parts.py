@@ -39,16 +39,15 @@ class ExportedPart:
     Attributes
     ----------
     use, label, role : as in the mooring file
-    component : definition of the component
     flexible : whether the part is a cable or chain, whose values are per metre
     length : unstretched length [m]
     buoyancy : net buoyancy in reference water, positive up [N or N/m]
-    net, density : net buoyancy [N or N/m] of the part and density of the water [kg/m³], at the
-        depth that the part has in the upright line
-    kn, kt : normal and tangential drag at 1 m/s and 1025 kg/m³ [N/(m/s)², per metre if flexible]
+    net, density : net buoyancy [N or N/m] and water density [kg/m³] at the depth of the part in the
+        upright line
+    kn, kt : normal and tangential drag at 1 m/s and 1025 kg/m³ [N/(m/s)² or N/(m/s)²/m]
     directional : whether the drag depends on the direction of the flow relative to the axis
     stiffness : EA [N]; 0 if inextensible
-    clamps : clamps on the part, with their distances from the upper end of the part [m]
+    clamps : clamps, with their distances from the upper end of the part [m]
     """
 
     use: str
@@ -97,9 +96,8 @@ class ExportedPart:
 
         Parameters
         ----------
-        density : uniform density of the water in the other program [kg/m³]. The area is scaled so
-            that the drag in that water equals the drag at the depth of the part. By default, the
-            area refers to reference water
+        density : uniform water density in the other program [kg/m³], in which the drag equals the
+            drag at the depth of the part; by default, the area is for reference water
         along : whether to return the tangential instead of the normal drag area
         """
         own = (self.kt if along else self.kn) / (0.5 * REFERENCE_DENSITY)
@@ -108,11 +106,11 @@ class ExportedPart:
 
 @dataclass
 class PartLoad:
-    """Sums of net force, mass and drag areas over the parts at one point or on one rigid segment.
+    """Sums over the parts at one point or on one rigid segment, for water of uniform density.
 
     Attributes
     ----------
-    density : uniform density of the water in the other program [kg/m³]
+    density : uniform density of the water [kg/m³]
     names : names of the parts
     net, mass : net force [N] and mass [kg]
     area, along : normal and tangential drag areas [m²]
@@ -151,13 +149,13 @@ class PartLoad:
 
 
 def unique_name(known: dict[str, str], name: str, figures: str) -> str:
-    """Register values under a name, and return this name.
+    """Register values under a unique name, and return this name.
 
-    If the preferred name is already registered with other values, a number is appended to the name.
+    A number is appended to the preferred name if other values already have this name.
 
     Parameters
     ----------
-    known : registered values by name; the new values are added to this dictionary
+    known : registered values by name, to which the new values are added
     name : preferred name
     figures : values in the format of the file
     """
@@ -169,7 +167,7 @@ def unique_name(known: dict[str, str], name: str, figures: str) -> str:
 
 
 def place_along(path: Floats, share: float) -> Coordinates:
-    """Interpolate the position at a given fraction of the length of a part.
+    """Interpolate the position at a fraction of the length of a part.
 
     Parameters
     ----------
@@ -197,10 +195,8 @@ class ExportedLine:
 
     Attributes
     ----------
-    name : name of the file
-    parts : parts of a mooring from the top down, without the anchor; or parts of a tow from the
-        ship down
-    anchor : the anchor, and the weight in water of the anchor with its clamps [N]; None for a tow
+    parts : parts from the top, or from the ship, down; without the anchor
+    anchor : the anchor, and its weight in water with its clamps [N]; None for a tow
     depth : water depth [m]
     levels : current and density at each level, from the surface down
     gravity : acceleration of gravity [m/s²]
@@ -208,12 +204,11 @@ class ExportedLine:
     tow : the ship of a tow; None for a mooring
     afloat : whether the line reaches the surface
     has_draft : whether the hull of the float is known
-    riding : share of the net buoyancy of the float that is used, and drag of the float as a share
-        of its drag when immersed; both are 1 for a submerged float
+    riding : net buoyancy in use and drag of the float, as fractions of the values when immersed
     windage : wind area of the float [m²], and drag coefficient of this area
     omitted : features that no other program can represent
     solve : function that finds the equilibrium
-    ends : connections of the upper and the lower end, for a leg of a net; None for a single line
+    ends : connections of the upper and the lower end of a leg; None for a single line
     """
 
     name: str
@@ -266,11 +261,11 @@ class ExportedLine:
         return paths
 
     def float_as_point(self, density: float) -> tuple[float, float]:
-        """Return net force [N] and drag area [m²] of a point that represents a submerged float.
+        """Return net force [N] and drag area [m²] of a point that loads the line like the submerged
+        float.
 
-        Some programs treat a float as a point at the end of the line, in water of uniform `density`
-        [kg/m³]. With the returned values, such a point exerts the same load on the line as the
-        float in CALM. If there is no equilibrium, the values of the float itself are returned.
+        Other programs place the point at the end of the line, in water of uniform `density`
+        [kg/m³]. Without an equilibrium, the values of the float itself are returned.
         """
         part = self.parts[0]
         own = part.net, part.area(density)

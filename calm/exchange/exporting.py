@@ -42,10 +42,9 @@ def export_file(
     InputError
         The file has mistakes.
     NoEquilibrium
-        No length can be found for a piece with fitted length, or the format needs an equilibrium
-        and the mooring has none.
+        A fitted length cannot be found, or the format needs an equilibrium that does not exist.
     UsageError
-        `to` is not a registered format, or the format cannot represent this kind of design.
+        The format is unknown, or cannot represent this kind of design.
     """
     chosen = written_format(to)
     assert chosen.write is not None

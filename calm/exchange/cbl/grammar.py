@@ -51,10 +51,10 @@ class KeyValue:
         return self.formula.at(**values)
 
     def at(self, depth: float) -> float:
-        """Evaluate the formula or table at a depth.
+        """Evaluate the formula or table at a depth; `depth` may also be a speed or a strain in a
+        table.
 
-        If the table has speeds or strains instead of depths, `depth` is a speed or a strain. A
-        table is interpolated linearly, and extrapolated beyond its ends.
+        A table is interpolated linearly, and extrapolated beyond its ends.
         """
         if not self.rows:
             return self.number(H=depth, h=depth, t=0.0)
@@ -145,7 +145,6 @@ class CableProblem:
 
     Attributes
     ----------
-    options : options of the import
     description, environment, analysis : values by key in the sections of these names
     buoys, anchors, connectors, materials : definitions by name
     layout : terminals, segments and branches, in file order

@@ -108,7 +108,7 @@ class _File:
 
 
 def read_moordyn(path: Path) -> model.ImportedDesign:
-    """Read a MoorDyn file with a single line from an anchor up to a float, or with a net of legs.
+    """Read a MoorDyn file with one line from anchor to float, or with a net of legs.
 
     Raises
     ------

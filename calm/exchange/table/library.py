@@ -38,7 +38,7 @@ Library = Mapping[str, ListRow]
 def read_library(path: Path) -> Library:
     """Read elements from `mdcodes.mat` of Mooring Design & Dynamics, or from a table or workbook.
 
-    If several elements have the same name, the first element is used.
+    Of elements with the same name, the first is used.
 
     Raises
     ------
@@ -75,8 +75,7 @@ def complete_rows(rows: Iterable[ListRow], library: Library, source: str) -> Non
 
     Parameters
     ----------
-    rows : rows of the list, which are changed in place
-    library : the library
+    rows : rows of the list, changed in place
     source : name of the library, for hints to the user
     """
     for row in rows:

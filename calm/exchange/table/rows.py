@@ -110,8 +110,7 @@ def rows_of(
     Parameters
     ----------
     guessed : list to which guesses are added
-    bare : function that returns whether a row that contains only a name is a piece, because a
-        library has the values
+    bare : whether a row with only a name is a piece, because a library has the values
     """
     rows: list[ListRow] = []
     known = headings.columns
