@@ -36,18 +36,18 @@ Levels = tuple[tuple[float, float, float, float, float], ...]
 class ExportedPart:
     """A piece, or an item clamped on a piece.
 
+    Values of a flexible part (a cable or chain) are per metre.
+
     Attributes
     ----------
-    use, label, role : as in the mooring file
-    flexible : whether the part is a cable or chain, whose values are per metre
     length : unstretched length [m]
     buoyancy : net buoyancy in reference water, positive up [N or N/m]
     net, density : net buoyancy [N or N/m] and water density [kg/m³] at the depth of the part in the
         upright line
     kn, kt : normal and tangential drag at 1 m/s and 1025 kg/m³ [N/(m/s)² or N/(m/s)²/m]
-    directional : whether the drag depends on the direction of the flow relative to the axis
+    directional : whether the drag depends on the flow direction relative to the axis
     stiffness : EA [N]; 0 if inextensible
-    clamps : clamps, with their distances from the upper end of the part [m]
+    clamps : clamps, with their distances from the upper end [m]
     """
 
     use: str
@@ -96,9 +96,9 @@ class ExportedPart:
 
         Parameters
         ----------
-        density : uniform water density in the other program [kg/m³], in which the drag equals the
-            drag at the depth of the part; by default, the area is for reference water
-        along : whether to return the tangential instead of the normal drag area
+        density : uniform water density for the same drag in another program [kg/m³]; by default,
+            reference water
+        along : whether the area is tangential instead of normal
         """
         own = (self.kt if along else self.kn) / (0.5 * REFERENCE_DENSITY)
         return own if density is None else own * self.density / density
@@ -106,12 +106,11 @@ class ExportedPart:
 
 @dataclass
 class PartLoad:
-    """Sums over the parts at one point or on one rigid segment, for water of uniform density.
+    """Sums over the parts at one point or on one rigid segment, for water of uniform density
+    [kg/m³].
 
     Attributes
     ----------
-    density : uniform density of the water [kg/m³]
-    names : names of the parts
     net, mass : net force [N] and mass [kg]
     area, along : normal and tangential drag areas [m²]
     """
@@ -151,13 +150,8 @@ class PartLoad:
 def unique_name(known: dict[str, str], name: str, figures: str) -> str:
     """Register values under a unique name, and return this name.
 
-    A number is appended to the preferred name if other values already have this name.
-
-    Parameters
-    ----------
-    known : registered values by name, to which the new values are added
-    name : preferred name
-    figures : values in the format of the file
+    `known` holds registered values by name, and `figures` the new values as written in the file. A
+    number is appended to a preferred name in use.
     """
     chosen, number = name, 1
     while known.setdefault(chosen, figures) != figures:
@@ -169,10 +163,7 @@ def unique_name(known: dict[str, str], name: str, figures: str) -> str:
 def place_along(path: Floats, share: float) -> Coordinates:
     """Interpolate the position at a fraction of the length of a part.
 
-    Parameters
-    ----------
-    path : (n, 3) positions of the nodes of the part
-    share : fraction of the length from the first node, 0 to 1
+    `path` has the node positions (n, 3). `share`, 0 to 1, counts from the first node.
     """
     steps = np.linalg.norm(np.diff(path, axis=0), axis=1)
     along = np.concatenate([[0.0], np.cumsum(steps)])
@@ -195,20 +186,20 @@ class ExportedLine:
 
     Attributes
     ----------
-    parts : parts from the top, or from the ship, down; without the anchor
+    parts : parts without the anchor, from the top (of a tow: from the ship) down
     anchor : the anchor, and its weight in water with its clamps [N]; None for a tow
     depth : water depth [m]
-    levels : current and density at each level, from the surface down
+    levels : current and density, from the surface down
     gravity : acceleration of gravity [m/s²]
     wind : wind velocity to the east and to the north [m/s]
-    tow : the ship of a tow; None for a mooring
+    tow : None for a mooring
     afloat : whether the line reaches the surface
     has_draft : whether the hull of the float is known
     riding : net buoyancy in use and drag of the float, as fractions of the values when immersed
-    windage : wind area of the float [m²], and drag coefficient of this area
+    windage : wind area of the float [m²], and its drag coefficient
     omitted : features that no other program can represent
     solve : function that finds the equilibrium
-    ends : connections of the upper and the lower end of a leg; None for a single line
+    ends : upper and lower connection of a leg; None for a single line
     """
 
     name: str

@@ -33,8 +33,8 @@ def export_file(
 
     Parameters
     ----------
-    to : name of a registered format that can be written
-    environment : name of an environment in the file, or path of an environment file
+    to : name of a registered format
+    environment : name in the file, or path of an environment file
     catalogs : component catalogues, as in `calm.load`
 
     Raises
@@ -42,9 +42,9 @@ def export_file(
     InputError
         The file has mistakes.
     NoEquilibrium
-        A fitted length cannot be found, or the format needs an equilibrium that does not exist.
+        The format, or a fitted length, needs an equilibrium that does not exist.
     UsageError
-        The format is unknown, or cannot represent this kind of design.
+        The format is unknown, or cannot represent the design.
     """
     chosen = written_format(to)
     assert chosen.write is not None

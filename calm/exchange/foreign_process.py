@@ -27,12 +27,8 @@ def read_apart(
 ) -> _Found:
     """Call a reader in a child process, and return the result.
 
-    The reader must be defined at the top level of a module.
-
-    Raises
-    ------
-    ValueError
-        The reader failed, crashed, or took too much time or memory.
+    The reader must be defined at the top level of a module. Raise ValueError if the reader fails,
+    crashes, or takes too much time or memory.
     """
     from multiprocessing import Pipe, Process
 

@@ -37,9 +37,9 @@ class Imported:
     ----------
     file, format : the file that was read, and the name of its format
     text : text of the mooring file
-    guessed, dropped : remarks on guessed values, and on omitted features
-    matched : components that were replaced by catalogue entries
-    record : currents at several times; None if the file has none
+    guessed, dropped : guessed values, and omitted features
+    matched : components replaced by catalogue entries
+    record : currents at several times, if any
     understood : interpretation of an ambiguous format, as text
     """
 
@@ -62,19 +62,19 @@ def import_file(
     options: model.ImportOptions | None = None,
     match_catalogue: bool = False,
 ) -> Imported:
-    """Convert a file of another program to a mooring file, which is not yet written.
+    """Convert a file of another program to a mooring file, without writing the mooring file.
 
     Parameters
     ----------
     output : path of the future mooring file
-    format : name of a registered format; by default, the format is recognised from the content
-    environment : path of an environment file that replaces the environment in the imported file
+    format : name of a registered format; by default recognised from the content
+    environment : environment file that replaces the environment in the imported file
     match_catalogue : whether components are replaced by similar catalogue entries
 
     Raises
     ------
     InputError
-        The file is damaged, has no environment, or has a feature that CALM cannot represent.
+        The file is damaged, has no environment, or has an unsupported feature.
     UsageError
         The format is unknown.
     """
@@ -155,12 +155,8 @@ def _check_readable(path: Path, output: Path, text: str) -> None:
 def environment_lines(path: Path, output: Path) -> list[str]:
     """Return the lines of the `environment` key in a file, for the mooring file `output`.
 
-    The path of a current file becomes relative to the folder of `output`.
-
-    Raises
-    ------
-    InputError
-        The file cannot be read, or has no `environment`.
+    The path of a current file becomes relative to the folder of `output`. Raise InputError without
+    a readable `environment`.
     """
     found = read_document(path).data.get("environment")
     if not isinstance(found, dict) or not found:

@@ -62,11 +62,11 @@ class ListedInstrument:
     Attributes
     ----------
     where : position in the list, for messages
-    name, serial : empty if missing in the list
+    name, serial : empty if missing
     nominal : nominal depth [m]; NaN if unknown
-    clock : lag of the clock [s], negative for an early clock; None if unknown
-    checked : time at which the lag was measured; None if unknown
-    remark : any other error of the clock, in words
+    clock, checked : lag of the clock [s], negative if early, and time of its measurement; None if
+        unknown
+    remark : any other clock error, in words
     """
 
     where: str
@@ -86,17 +86,9 @@ def in_words(late: float) -> str:
 def read_instrument_list(path: Path, seabed: float) -> list[ListedInstrument]:
     """Read the instruments of a list, in the order of the list.
 
-    Only instruments with a serial number, or with a nominal depth and a name or clock error, are
-    returned.
-
-    Parameters
-    ----------
-    seabed : water depth [m], to convert heights above the seabed
-
-    Raises
-    ------
-    InputError
-        The list cannot be read, has an unknown format, or has no such instrument.
+    Each instrument has a serial number, or a nominal depth and a name or clock error; others are
+    omitted. `seabed` is the water depth [m], to convert heights. Raise InputError if the list is
+    unreadable or has no such instrument.
     """
     head = read_head(path, _HEAD)
     if cf_files.engine_of(path):

@@ -1,7 +1,7 @@
 """Read variables from a `.mat` file written by any version of MATLAB or Octave.
 
-Formats are MATLAB 4 and 5, HDF5 (MATLAB 7.3 and Octave) and Octave text, also compressed. No
-content is executed or unpickled.
+Binary, HDF5 and Octave text files are supported, also compressed. No content is executed or
+unpickled.
 """
 
 from __future__ import annotations

@@ -29,9 +29,9 @@ class ImportOptions:
     ----------
     defines : macros by name (WHOI Cable), or catalogue ids by component name (oceanarray)
     columns : headings in a table, by column name in CALM
-    elements : library of elements with the values that a table lacks
-    allow_include : whether a file may include files from outside its folder
-    sheet : sheet with the list in a workbook; None if only one sheet has a list
+    elements : library of elements for values that a table lacks
+    allow_include : whether files outside the folder may be included
+    sheet : sheet of a workbook; None if only one has a list
     """
 
     defines: Mapping[str, str] = field(default_factory=dict)
@@ -62,9 +62,9 @@ class ImportedComponent:
     kind : sphere, cylinder, body, cable, chain or anchor
     figures : values by field; per metre for cables and chains
     guesses : reason for each value that is not from the file, by field
-    comment : comment on the source of the values
-    hull : rows of draft [m], displaced volume [m³] and immersed area [m²] of a float; else empty
-    entry : id of the catalogue entry that replaces the component; empty without a replacement
+    comment : source of the values
+    hull : rows of draft [m], displaced volume [m³] and immersed area [m²], for a float
+    entry : id of the catalogue entry that replaces the component, or empty
     """
 
     name: str
@@ -81,10 +81,8 @@ class ImportedComponent:
     ) -> ImportedComponent:
         """Create a chain if the line sinks and is called a chain, else a cable.
 
-        Parameters
-        ----------
-        weight : weight in water per metre, negative for a floating line [N/m]
-        figures : diameter, drag and other values by field, to which weight or buoyancy is added
+        `weight` in water is per metre [N/m], negative for a floating line. `figures` holds the
+        other values by field.
         """
         figures["buoyancy" if weight < 0.0 else "weight"] = abs(weight)
         kind = "chain" if weight >= 0.0 and is_called(name, "chain") else "cable"
@@ -136,11 +134,8 @@ class ImportedPiece:
     ) -> None:  # fmt: skip
         """Clamp a component on the piece; clamps stay in order from the top.
 
-        Parameters
-        ----------
-        at : distance from the upper end of the piece [m]
-        guess : reason for a guessed position; empty if the position is from the file
-        label, serial : label and serial number of the clamp
+        `at` is the distance from the upper end of the piece [m]. `guess` is the reason for a
+        guessed position, or empty.
         """
         self.clamps.append(ImportedClamp(component, at, guess, label, serial))
         self.clamps.sort(key=lambda clamp: clamp.at)
@@ -174,10 +169,7 @@ def held_at(depth: float, east: float, north: float) -> str:
 def anchored_at(east: float, north: float, depth: float | None = None) -> str:
     """Return the mooring-file text for the lower end of a leg with an anchor.
 
-    Parameters
-    ----------
-    east, north : position of the anchor [m]
-    depth : depth at the anchor [m], if not the water depth
+    Position and depth are in metres; `depth` is needed only if it differs from the water depth.
     """
     deeper = "" if depth is None else f", depth: {depth:.9g} m"
     return f"{{anchor: {{at: [{east:.9g} m, {north:.9g} m]{deeper}}}}}"
@@ -194,11 +186,11 @@ class ImportedWater:
 
     Attributes
     ----------
-    depth : water depth [m]; None for a tow whose file gives no depth
-    density : density [kg/m³], or rows of depth and density; None if unknown
+    depth : water depth [m]; None for a tow if unknown
+    density : density [kg/m³], or rows of depth and density
     gravity : acceleration of gravity [m/s²]
     current : rows of depth [m] and velocity to the east, to the north and up [m/s]
-    wind : wind speed [m/s], and the direction towards which the wind blows [degrees]
+    wind : speed [m/s], and direction towards which the wind blows [degrees]
     guesses : reason for each value that is not from the file, by field
     """
 
@@ -225,18 +217,16 @@ class ImportedDesign:
 
     Attributes
     ----------
-    program : the program that wrote the file
-    items : pieces from the top, or from the ship, down; in a net, leg by leg
-    water : the environment; None if the file has none
+    items : pieces from the top (of a tow: from the ship) down; in a net, leg by leg
+    water : None if the file has no environment
     environment : lines of the `environment` key that replaces `water`
     solver : keys of `solver`, each with its value and a comment
     guessed : remarks on guesses, except for values of a component
-    dropped : remarks on contents of the file that CALM cannot use
+    dropped : remarks on contents that CALM cannot use
     notes : further comments at the head of the mooring file
     heading : further keys of the mooring file, as text
     in_kilograms : whether the file gives forces in kilograms-force
-    sunken : uppermost component for use if the float is submerged in still water; None if known
-        from the file
+    sunken : replacement of the uppermost component, if the float is submerged in still water
     understood : interpretation of an ambiguous format, as text
     """
 

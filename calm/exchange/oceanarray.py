@@ -90,16 +90,8 @@ def read_oceanarray(path: Path, options: model.ImportOptions) -> model.ImportedD
 def listed_instruments(path: Path) -> list[tuple[int, str, str, float, Mapping[str, Any]]]:
     """List the instruments of a file that have a serial number and a height.
 
-    Returns
-    -------
-    list
-        Line number, label, serial number, height above the seabed [m], and keys of each instrument.
-        The keys include the `recovery_time` of the file.
-
-    Raises
-    ------
-    InputError
-        The file is damaged.
+    Each row has line number, label, serial number, height above the seabed [m], and the keys with
+    the `recovery_time` of the file. Raise InputError if the file is damaged.
     """
     document, problems = read_document(path), list[Problem]()
     reading = _Reading(document, problems)

@@ -67,11 +67,8 @@ def is_long(name: str, length: float, across: float) -> bool:
 def role_of(name: str, buoyancy: float, *, fastener: bool = False) -> str:
     """Find the role of a rigid piece from its name and its net buoyancy.
 
-    Parameters
-    ----------
-    name : name of the piece in the other program
-    buoyancy : net force in water, positive up [N]
-    fastener : whether the other program marks the piece as a fastener
+    `buoyancy` is the net force in water, positive up [N]. `fastener` is whether the other program
+    marks the piece as a fastener.
     """
     if is_called(name, "release"):
         return "release"

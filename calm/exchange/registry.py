@@ -40,11 +40,8 @@ the last format with a reader, because `table` accepts any text in columns.
 class Exported:
     """Result of an export: a file for another program.
 
-    Attributes
-    ----------
-    content : content of the file
-    lost : features of the design that the format cannot represent
-    beside : contents of further files for the same folder, by file name
+    `lost` lists the features that the format cannot represent. `beside` has the contents of further
+    files for the same folder, by file name.
     """
 
     content: bytes
@@ -97,14 +94,13 @@ def register_format(
     Parameters
     ----------
     name : name for `--format` and `--to`, and name of the entry point
-    detect : function that recognises a file by its first bytes; None if the user must name the
-        format
-    read : function that reads a file as a design; None if the format cannot be imported
-    write : function that converts a design to a file; None if the format cannot be exported
+    detect : function that recognises a file; None if the user must give `--format`
+    read : function for import, or None
+    write : function for export, or None
     program : name of the program, for messages; by default, `name`
-    takes_elements : whether `read` uses `ImportOptions.elements`, a library of elements
+    takes_elements : whether `read` uses the library `ImportOptions.elements`
     writes_nets : whether `write` accepts designs with several legs
-    suffixes : file name suffixes that the program accepts, such as ".mat"; by default, any suffix
+    suffixes : file name suffixes that the program accepts, such as ".mat"; by default any
     """
     if name in _registered:
         raise ValueError(f"the format `{name}` already exists")
@@ -114,7 +110,7 @@ def register_format(
 
 
 def file_format(name: str) -> FileFormat:
-    """Return the format with a given name; the module of the format is imported if needed.
+    """Return the format with a given name; its module is imported if needed.
 
     Raises
     ------

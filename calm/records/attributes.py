@@ -1,7 +1,6 @@
 """Attributes with a defined meaning: CF standard names, cell methods, coordinate frames and north.
 
-Of the free text, only long names and comments are read, to find the reference north and the sense
-of a direction.
+Free text is ignored, except for the direction words in long names and comments.
 """
 
 from __future__ import annotations
@@ -61,11 +60,7 @@ def not_a_value(variable: xr.DataArray, layers: Collection[str] = ()) -> str | N
     """Return the reason why values of a variable do not belong to one time and depth, or None.
 
     Reasons are cell methods (a spread, a climatology, a mean over depth) and a scale factor of
-    zero.
-
-    Parameters
-    ----------
-    layers : dimensions and coordinates with bounds; means over these layers are accepted
+    zero. Means over the dimensions in `layers` are accepted.
     """
     methods = str(variable.attrs.get("cell_methods", ""))
     for dims, method, over in _METHOD.findall(methods):

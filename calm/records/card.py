@@ -58,12 +58,12 @@ class ReadCard:
     Attributes
     ----------
     texts : title, summary and comment, quoted from the file
-    variables : summaries of the variables by role, such as east, north, depth
+    variables : by role, such as east, north, depth
     levels : number of levels or of instruments
     times : (n,) increasing times; empty for a profile without a time
     clock : name and unit of the time variable
     flags : number of readings excluded by each flag variable
-    declination : rotation of currents from magnetic to true north [degrees]; None without rotation
+    declination : rotation of currents from magnetic to true north [degrees], if any
     """
 
     file: str

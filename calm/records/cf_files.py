@@ -1,7 +1,7 @@
-"""Access to CF datasets: opening, values, units, times and labels.
+"""Access to CF datasets (NetCDF 3 and 4, zarr): opening, values, units, times and labels.
 
-Formats are NetCDF 3 and 4 and zarr. Times stay undecoded, and values are read lazily. A faulty file
-raises `UnreadableError`, which `reading` converts to `InputError`.
+Times stay undecoded, and values are read lazily. A faulty file raises `UnreadableError`, which
+`reading` converts to `InputError`.
 """
 
 from __future__ import annotations
@@ -312,12 +312,10 @@ def labels_along(dataset: xr.Dataset, dimension: str) -> tuple[str, ...] | None:
 
 
 def places_along(dataset: xr.Dataset, dimension: str | None, seabed: float) -> Floats | None:
-    """Return the nominal depths of instruments [m]; None if the dataset has no nominal depths.
+    """Return the nominal depths of instruments [m]; None if the dataset has none.
 
-    Parameters
-    ----------
-    dimension : dimension of the instruments; None for a single instrument
-    seabed : water depth [m], to convert heights above the seabed
+    `dimension` is None for a single instrument. `seabed` is the water depth [m], to convert heights
+    above the seabed.
     """
     dims = () if dimension is None else (dimension,)
     for names, sign, start in ((_HEIGHTS, -1.0, seabed), (_DEPTHS, 1.0, 0.0)):

@@ -33,16 +33,15 @@ SAMPLED = 64_000_000
 class CurrentDataset:
     """A dataset of currents with identified velocity, levels, times and position.
 
-    Values of the current are read later. The constructor raises UnreadableError if the file has no
-    usable current.
+    The constructor raises UnreadableError if the file has no usable current. Values are read later.
 
     Attributes
     ----------
     times : (n,) times in file order; None for a profile without a time
-    turned : notice that the currents were rotated from magnetic to true north, or empty
+    turned : notice of a rotation from magnetic to true north, or empty
     rules : rules by which the file was read
     source : names of the variables, and the position of the grid column
-    labels : parts of a line that carry the instruments, if the levels have no depths; else empty
+    labels : parts of a line that carry the instruments, if the levels have no depths
     """
 
     def __init__(self, dataset: xr.Dataset, terms: Terms) -> None:
@@ -108,11 +107,11 @@ class CurrentDataset:
         return 8 * levels * (len(self._parts) + self.moves)
 
     def read(self, index: Index) -> Levels:
-        """Read the profiles at the given time indices, or the only profile of a file without times.
+        """Read the profiles at the given time indices, or the only profile.
 
-        Return the depths [m] and the components u, v and w [m/s]. Depths are (k,), or (n, k) if the
-        levels move; components are (n, k). w is None if the file has no vertical velocity. u and v
-        are inf if the speed is negative or the direction is beyond ±360°.
+        Return depths (k,) [m], or (n, k) if the levels move, and components u, v and w (n, k)
+        [m/s]. w is None without vertical velocity. u and v are inf if the speed is negative, or the
+        direction beyond ±360°.
         """
         first, second, *up = (
             self._along(variable, index, cf_files.known_values) * factor

@@ -1,7 +1,7 @@
 """Currents from a file of measurements or of a model: NetCDF, zarr or CSV.
 
-The columns of a CSV profile are `depth[m],u[m/s],v[m/s]` or `depth[m],speed[m/s],toward[deg]`. A
-CSV record has a first column `time`; rows of one time are adjacent. Levels without a value are
+A CSV profile has columns `depth[m],u[m/s],v[m/s]` or `depth[m],speed[m/s],toward[deg]`. A CSV
+record begins with a column `time`, with adjacent rows for each time. Levels without a value are
 omitted.
 """
 
@@ -40,11 +40,7 @@ EXAMPLE = "depth[m],u[m/s],v[m/s]"
 
 
 def read_current_file(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable, list[str]]:
-    """Return the current profile of a file at a time, and notices about this profile.
-
-    Parameters
-    ----------
-    time : time in ISO 8601; None if the file has a single profile
+    """Return the current profile of a file at an ISO 8601 time, and notices about the profile.
 
     Raises
     ------

@@ -28,12 +28,11 @@ class Terms:
     Attributes
     ----------
     water_depth : water depth [m], to convert heights above the seabed; inf if unknown
-    place : position; the nearest column of a gridded file is read
-    declination : magnetic declination [degrees], positive to the east, to rotate magnetic currents
-        to true north
-    maximum_speed : speed [m/s] above which a current is a mistake in the file
-    on_the_line : whether the file holds instruments on a mooring line; levels may then be labelled
-        by part of the line, and bad currents keep their flags
+    place : position for the nearest column of a gridded file
+    declination : magnetic declination [degrees], positive to the east, for rotation to true north
+    maximum_speed : speed [m/s] above which a current is a mistake
+    on_the_line : whether the file holds instruments on a mooring line, with levels labelled by part
+        and bad currents kept with their flags
     """
 
     water_depth: float = inf
@@ -110,11 +109,8 @@ def time_text(time: np.datetime64) -> str:
 def choose_time(times: NDArray[np.datetime64], wanted: str | None) -> tuple[int, str | None]:
     """Return the index of the time nearest to a requested time, and a notice if they differ.
 
-    Raises
-    ------
-    TimeChoiceError
-        The file has no times, the requested time is outside the record or occurs twice, or no time
-        is requested although the file has several.
+    Raise TimeChoiceError if the requested time is outside the record or occurs twice. A request is
+    needed if the file has several times.
     """
     if not len(times):
         raise TimeChoiceError("the file has no times")

@@ -1,7 +1,7 @@
 """Tables in text: separators, quotes, decimal commas and the position of each cell.
 
-Cells are separated by tabs, semicolons, commas or blanks, whichever divides the lines most evenly,
-and may be quoted. Empty lines and text after ``#`` are ignored.
+Separators are tabs, semicolons, commas or blanks; cells may be quoted. Empty lines and text after
+``#`` are ignored.
 """
 
 from __future__ import annotations
@@ -188,15 +188,8 @@ class CopiedTable:
 def read_table(path: Path, example: str, lines: Iterable[NumberedLine] | None = None) -> TextTable:
     """Read a table from a file of UTF-8 text.
 
-    Parameters
-    ----------
-    example : sample header, for messages
-    lines : numbered lines of the file, if the file is already split
-
-    Raises
-    ------
-    InputError
-        The file is unreadable or empty, or has no header.
+    `example` is a sample header for messages. `lines` are the numbered lines of a file that is
+    already split. Raise InputError if the file is unreadable or has no header.
     """
     if lines is None:
         text = decoded(path, COMMENT.sub(rb"\1", read_content(path, largest=LARGEST_CSV)))
@@ -210,17 +203,8 @@ def table_lines(
 ) -> tuple[CellRow, Iterator[NumberedLine]]:
     """Return the header of a table, and an iterator over the lines below the header.
 
-    A first column without a heading, as written by R and pandas, is skipped.
-
-    Parameters
-    ----------
-    lines : all lines of the file
-    example : sample header, for messages
-
-    Raises
-    ------
-    InputError
-        There are no lines, or no header.
+    A first column without a heading, as written by R and pandas, is skipped. `example` is a sample
+    header for messages. Raise InputError without a header.
     """
     lines = _content(lines)
     sample = list(islice(lines, _SAMPLE))
@@ -245,8 +229,8 @@ def table_lines(
 def copied_table(text: str) -> CopiedTable:
     """Parse a table copied from a spreadsheet, a file or a web page.
 
-    The first line is a header unless one of its cells begins with a number. Raise NoTableError if
-    there are no rows, or if rows differ in length.
+    A first line without numbers is the header. Raise NoTableError if there are no rows, or if rows
+    differ in length.
     """
     lines = list(_content(enumerate(text.splitlines(), 1)))
     dialect = dialect_of([line.strip(" ") for _, line in lines])
@@ -280,8 +264,7 @@ def cells_in(text: str) -> list[list[str]]:
 def dialect_of(lines: Sequence[str], *, words: bool = False) -> Dialect:
     """Find the separator and the decimal symbol of a table.
 
-    The separator divides most lines into the same number of cells. The decimal symbol is a comma if
-    a comma cannot separate thousands and no number has a point.
+    The decimal symbol is a comma if a comma cannot separate thousands and no number has a point.
 
     Parameters
     ----------

@@ -40,11 +40,8 @@ _PLACES = {
 class GridColumn:
     """A water column in a gridded dataset.
 
-    Attributes
-    ----------
-    index : index of the column along every horizontal dimension
-    place : latitude and longitude; None if the file does not give the position
-    notes : remarks on the choice of the column
+    `index` is by horizontal dimension. `place` is latitude and longitude, or None if the file does
+    not give the position. `notes` explain the choice.
     """
 
     index: dict[str, int]
@@ -66,17 +63,11 @@ def choose_column(
 ) -> GridColumn:
     """Select the nearest grid column with a current, or the only column.
 
-    Parameters
-    ----------
-    velocity : names of the two velocity variables
-    time : dimension of the times
-    wanted : latitude and longitude; needed if the file has several columns
+    `velocity` names the two velocity variables, and `time` the dimension of the times. `wanted` is
+    latitude and longitude, needed if there are several columns.
 
-    Raises
-    ------
-    UnreadableError
-        The file has several columns and no position is given, the position is outside the grid, no
-        column nearby has a current, or the velocity variables are on different points.
+    Raise UnreadableError if the position is missing or outside the grid, if no column nearby has a
+    current, or if the grid is staggered.
     """
     import xarray as xr
 
@@ -176,10 +167,10 @@ def _indices_around(
 
 
 def _nearest(away: Floats) -> NDArray[Any]:
-    """Return the indices of the grid points nearest to a position along an axis, in axis order.
+    """Return the indices of the points nearest to a position along an axis, in axis order.
 
-    There are at most ``2 REACH + 1`` points. On a longitude axis around the globe, the points may
-    include both ends. `away` has the signed distances from the position [degrees].
+    There are at most ``2 REACH + 1`` points. `away` has the signed distances from the position
+    [degrees]; an axis around the globe may give both ends.
     """
     near = np.argsort(np.abs(away), kind="stable")[: 2 * REACH + 1]
     return near[np.argsort(away[near], kind="stable")]
@@ -277,10 +268,9 @@ class SeabedGrid:
 
     Attributes
     ----------
-    sha256 : checksum of the file
     latitude, longitude : origin of the mooring coordinates [degrees]
     reach : half the side of the square around the origin that is read [m]
-    east, north : distances of the point from the origin [m]
+    east, north : position of the point from the origin [m]
     """
 
     path: str = field(compare=False)

@@ -1,7 +1,7 @@
 """Column headings of text tables: a name and its unit, in common notations.
 
 Examples are ``depth[m]``, ``Depth (m)``, ``depth m``, ``toward[deg magnetic]`` and ``time (UTC)``.
-After a name of several words, the unit must be in brackets or a known unit.
+Names of several words need a unit in brackets, or a known unit.
 """
 
 import re
@@ -28,8 +28,8 @@ _MAGNETIC = re.compile(r"(?i)\s*\bmag(netic)?$")
 def heading(column: str, dimensions: Sequence[str] = ()) -> tuple[str, str]:
     """Split a heading into its name and its unit; a missing unit is empty.
 
-    The unit is in brackets. If `dimensions` (keys of `calm.units.DIMENSIONS`) are given, a known
-    unit without brackets is also found, preferably of one of these dimensions.
+    With `dimensions` (keys of `calm.units.DIMENSIONS`), a known unit needs no brackets; units of
+    these dimensions are preferred.
     """
     text = " ".join(column.split())
     bracketed = _BRACKETED.fullmatch(text)
@@ -60,7 +60,7 @@ def column_unit(
 
     Parameters
     ----------
-    column : heading of the column, for messages
+    column : heading, for messages
     unit : unit in the heading, or empty
     dimensions : allowed dimensions, keys of `calm.units.DIMENSIONS`
     usual : unit to suggest; by default the SI unit
@@ -138,7 +138,7 @@ class NamedColumns:
     Attributes
     ----------
     factors : factor to SI units (degrees for angles), by column name
-    places : index of the cell in a row, by column name
+    places : cell index by column name
     rows : rows with as many cells as the header
     others : headings of the unknown columns
     """
@@ -162,8 +162,7 @@ class TimeColumns:
     Attributes
     ----------
     time : (n,) increasing times
-    names : label of each of the c columns
-    dimensions : dimension of each column, a key of `calm.units.DIMENSIONS`
+    names, dimensions : label and dimension (key of `calm.units.DIMENSIONS`) of the c columns
     values : (n, c) values in SI units; NaN in gaps
     """
 
@@ -185,8 +184,8 @@ def read_named_columns(
     Parameters
     ----------
     known : dimension of each known column by name; spaces in headings are read as underscores
-    problems : list to which mistakes in headings and rows are added
-    other_names : known name for each alternative name of a column
+    problems : list to which mistakes are added
+    other_names : known name by alternative name
     """
     header = table.header
     names = [heading(column)[0].lower().replace(" ", "_") for column in header.cells]
@@ -212,15 +211,8 @@ def read_named_columns(
 def read_time_columns(path: Path, dimensions: Sequence[str], example: str) -> TimeColumns:
     """Read a table of times and quantities; the heading of a quantity has a label and a unit.
 
-    Parameters
-    ----------
-    dimensions : allowed dimensions of the columns, keys of `calm.units.DIMENSIONS`
-    example : sample heading, for messages
-
-    Raises
-    ------
-    InputError
-        The table has mistakes; up to `MOST_PROBLEMS` of them are listed.
+    `dimensions` are the allowed ones, keys of `calm.units.DIMENSIONS`. `example` is a sample
+    heading for messages. Raise InputError with up to `MOST_PROBLEMS` mistakes.
     """
     table = delimited.read_table(path, f"time,{example}")
     header = table.header

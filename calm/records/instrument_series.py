@@ -53,11 +53,8 @@ _ONE_PLACE = ("instrument_nominal_depth", "nominal_depth", "sensor_depth")
 class Identity:
     """Identity of an instrument, as stated in its file.
 
-    Attributes
-    ----------
-    label, serial : empty if missing in the file
-    nominal : nominal depth [m]; NaN if missing in the file
-    source : name of the file
+    A missing label or serial number is empty. `nominal` is the nominal depth [m], NaN if missing.
+    `source` is the file name.
     """
 
     label: str
@@ -83,11 +80,11 @@ class InstrumentSeries(Identity):
     Attributes
     ----------
     time : (n,) increasing times
-    value : (n,) values in the unit of the quantity; NaN if missing or rejected by a flag
+    value : (n,) values in the unit of the quantity; NaN if missing or rejected
     dropped : number of readings rejected by their flags
-    below : distance of a profiler's bin below the profiler [m]; 0 for other instruments
+    below : distance of a profiler's bin below the profiler [m]; else 0
     note : doubts and assumptions
-    pressure : median pressure in the file [dbar]; NaN without pressures
+    pressure : median pressure in the file [dbar], or NaN
     called : label stated in the file, also if the user gives another label
     """
 
@@ -103,15 +100,8 @@ class InstrumentSeries(Identity):
     def checked(self, quantity: str, variable: str, notes: Sequence[str] = ()) -> InstrumentSeries:
         """Return the series with impossible values set to NaN and doubts added to `note`.
 
-        Parameters
-        ----------
-        variable : name of the variable in the file
-        notes : further remarks
-
-        Raises
-        ------
-        UnreadableError
-            Most values are impossible for sea water.
+        `variable` is the name in the file. Raise UnreadableError if most values are impossible for
+        sea water.
         """
         value, remarks = self.value, [*notes]
         if quantity in WATER:
@@ -136,20 +126,15 @@ def read_series(
     seabed: float,
     usual: Mapping[str, float] = MappingProxyType({}),
 ) -> dict[str, list[InstrumentSeries]]:
-    """Read time series of several quantities from files.
+    """Read time series from files; return the series by quantity name.
 
     Parameters
     ----------
-    given : paths of files, ``LABEL=PATH`` for a file of one instrument, or folders of such files
+    given : paths of files, ``LABEL=PATH`` for a file of one instrument, or folders
     names : keys of `QUANTITIES_MEASURED`
     flags : accepted quality flags; flag 8 is never accepted
     seabed : water depth [m], to convert heights above the seabed; NaN if unknown
-    usual : depth [m] by label, for files that have neither pressures nor a nominal depth
-
-    Returns
-    -------
-    dict
-        Series by quantity name.
+    usual : depth [m] by label, for files without pressures and nominal depth
 
     Raises
     ------
@@ -180,8 +165,8 @@ def read_series(
 def files_given(given: Sequence[str]) -> list[tuple[str, Path]]:
     """Return the label and the path of each file given; the label may be empty.
 
-    A folder stands for the data files in the folder. Raise InputError if a file is missing, or if a
-    folder has no data files.
+    A folder stands for its data files. Raise InputError if a file, or the data files of a folder,
+    are missing.
     """
     found: list[tuple[str, Path]] = []
     problems = []
@@ -254,11 +239,9 @@ def _opened(path: Path) -> Iterator[xr.Dataset]:
 def instruments_apart(dataset: xr.Dataset) -> list[xr.Dataset]:
     """Split a dataset of several instruments into one dataset per instrument.
 
-    The dataset must be a ragged array of CF, indexed (`instance_dimension`) or contiguous
-    (`sample_dimension`). Any other dataset is returned unsplit. Readings without an instrument are
-    excluded.
-
-    Raise UnreadableError if the index or the counts do not fit the dimensions.
+    Only a ragged array of CF, indexed (`instance_dimension`) or contiguous (`sample_dimension`), is
+    split. Readings without an instrument are excluded. Raise UnreadableError if the array is
+    inconsistent.
     """
     for name, index in dataset.variables.items():
         instances = index.attrs.get("instance_dimension")
@@ -422,8 +405,8 @@ def practical_salinity(
     Parameters
     ----------
     taken : variables as returned by `conductivity_in`
-    values : values of these variables, in the units of the file and with equal shapes
-    depth : depth [m], used if a pressure is missing
+    values : their values, in the units of the file and with equal shapes
+    depth : depth [m], used without pressure
     """
     import gsw
 
@@ -466,14 +449,9 @@ def _decibars(variable: xr.DataArray, values: Floats) -> Floats:
 def named(dataset: xr.Dataset, sought: Sequence[str], usual: Sequence[str]) -> list[str]:
     """Return the names of the variables of a quantity.
 
-    The first standard name of `sought` that occurs in the dataset takes precedence over the names
-    in `usual`. Names in `usual` choose between several variables with this standard name.
-
-    Raises
-    ------
-    UnreadableError
-        Several variables share the standard name and none has a usual name, or a variable with a
-        usual name has another standard name.
+    The first standard name of `sought` in the dataset takes precedence over the names in `usual`,
+    which decide between several variables. Raise UnreadableError if the choice stays ambiguous, or
+    if a variable with a usual name has another standard name.
     """
     there = _standard(dataset, sought)
     known = [one for one in usual if one in (there or dataset.data_vars)]
@@ -503,8 +481,7 @@ class Readings:
     Attributes
     ----------
     time : (n,) increasing times
-    axis : dimension of the times
-    along : dimension of the instruments; None for a single instrument
+    axis, along : dimensions of the times and the instruments; `along` is None for one instrument
     values : (n, k) values of each variable, in the units of the file
     dropped : (n, k) mask of readings rejected by a flag of any variable
     clock : name and unit of the time variable
@@ -598,13 +575,9 @@ def card_of(
 
 
 def who_along(dataset: xr.Dataset, along: str | None, seabed: float, source: str) -> list[Identity]:
-    """Identify the instruments along a dimension.
+    """Identify the instruments along a dimension, or the only instrument if `along` is None.
 
-    Parameters
-    ----------
-    along : dimension of the instruments; None for a file of one instrument
-    seabed : water depth [m], to convert heights above the seabed
-    source : name of the file
+    `seabed` is the water depth [m], to convert heights above the seabed.
     """
     if along is None:
         single = [str(dim) for dim, size in dataset.sizes.items() if size == 1]

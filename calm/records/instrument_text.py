@@ -1,8 +1,7 @@
 """Text files of single instruments, converted to datasets as found in archives.
 
-RODB files (`.use`, `.microcat` and `.rcm` of RAPID and OSNAP) have lines ``Name = value`` above
-columns with fixed units. Sea-Bird `.cnv` files, RBR RSKtools tables and plain tables name each
-column and its unit in the header.
+RODB files (`.use`, `.microcat`, `.rcm`) have lines ``Name = value`` above columns with fixed units.
+Sea-Bird `.cnv` files, RBR RSKtools tables and plain tables have units in the header.
 """
 
 from __future__ import annotations
@@ -68,9 +67,9 @@ _MISSING = (-9999.0, -999.0, -99.999, -9.99e-29, 1e35)
 def reader_of(path: Path) -> Callable[[Path], xr.Dataset] | None:
     """Return the function that reads an instrument's text file, or None for any other file.
 
-    The function returns a dataset with OceanSITES names and attributes. Times are seconds since
-    1970, and missing values are NaN. The function raises InputError if the file is unreadable, has
-    no times, or has an invalid row.
+    The function returns a dataset with OceanSITES names, times in seconds since 1970, and NaN for
+    missing values. The function raises InputError if the file is unreadable, has no times, or has
+    an invalid row.
     """
     with path.open("rb") as file:
         head = file.read(_HEAD).decode("latin-1")

@@ -39,11 +39,10 @@ class LevelDepths:
 
     Attributes
     ----------
-    variable : level variable; all its dimensions are dimensions of the velocity
+    variable : level variable; its dimensions are dimensions of the velocity
     factor : signed factor to metres; negative if values increase upwards
     start : depth at which the values are zero [m]
     instrument : variable for an instrument depth to add, and its factor to metres; or None
-    notes : remarks on assumptions
     """
 
     variable: xr.DataArray
@@ -82,15 +81,9 @@ def find_levels(
 ) -> LevelDepths:
     """Find the depths of the levels of a velocity; moving levels take precedence over fixed ones.
 
-    Parameters
-    ----------
-    level, time : level and time dimensions of the velocity; None if missing
-    water_depth : water depth [m], to convert heights above the seabed
-
-    Raises
-    ------
-    UnreadableError
-        There are no levels, or it is unclear whether their values increase upwards or downwards.
+    `level` and `time` are dimensions of the velocity, or None. `water_depth` [m] converts heights
+    above the seabed. Raise UnreadableError if there are no levels, or if the direction of increase
+    is unclear.
     """
     standard, wanted = dataset.cf.standard_names, {level} - {None}
     names = [

@@ -63,7 +63,7 @@ def profile_doubts(depth: Floats, u: Floats, v: Floats, water_depth: float) -> I
     Parameters
     ----------
     depth : (n,) increasing depths [m]
-    u, v : (n,) eastward and northward components, without gaps [m/s]
+    u, v : (n,) components without gaps [m/s]
     water_depth : water depth [m]; inf if unknown
     """
     speed, toward = np.hypot(u, v), np.degrees(np.arctan2(u, v))
@@ -100,11 +100,8 @@ def _between(one: float, other: float) -> float:
 def strength_doubts(depth: Floats, speed: Floats, water_depth: float) -> Iterator[str]:
     """Report currents that are stronger than any measured in deep water.
 
-    Parameters
-    ----------
-    depth : (n,) depths of the levels [m]
-    speed : (n,) maximum speed at each level [m/s]
-    water_depth : water depth [m]; inf if unknown
+    Depths (n,) are in metres and maximum speeds (n,) at these depths in m/s. An unknown water depth
+    is inf.
     """
     if not _SHELF < water_depth < inf:
         return

@@ -58,8 +58,8 @@ def read_columns(
 ) -> dict[str, Floats]:
     """Convert the known columns of a table to SI units; return arrays by column name.
 
-    A mistake is added to the problems of the table, and the wrong value becomes NaN. `gaps` is a
-    mask of rows in which values may be missing.
+    Mistakes are added to the problems of the table, and wrong values become NaN. `gaps` masks rows
+    in which values may be missing.
     """
     columns, rows = table.columns, table.rows
     units = _unit_by_column(table, known)
@@ -160,12 +160,8 @@ def check_depths(
 ) -> None:
     """Check that depths are within 0 and `DEEPEST`, and increase within each profile.
 
-    Parameters
-    ----------
-    table : table to whose `problems` mistakes are added
-    values : values in SI units by column name
-    rows : indices of the rows to check
-    profile : index of the profile of each row; None for a single profile
+    Mistakes are added to the `problems` of the table. Values are in SI units by column name.
+    `profile` is the profile index of each row, or None for a single profile.
     """
     if "depth" not in values:
         return
@@ -225,10 +221,8 @@ _WATER = {"depth": _DEPTH, "density": DENSITY, "temperature": TEMPERATURE, "sali
 class CurrentTable:
     """A current profile: eastward, northward and upward velocity [m/s] at increasing depths [m].
 
-    Attributes
-    ----------
-    record : source file and the options for reading; None if the profile is not from a record
-    doubts : remarks on suspicious directions
+    `record` is the source file with the options for reading; None if not from a record. `doubts`
+    are remarks on suspicious directions.
     """
 
     depth: tuple[float, ...]
@@ -259,11 +253,8 @@ class SeaWater:
 def read_current(table: QuantityTable, terms: Terms = _DEFAULT_TERMS) -> CurrentTable | None:
     """Parse a current profile; return None and record the problems if the table has mistakes.
 
-    Parameters
-    ----------
-    table : columns `depth`; `u` and `v`, or `speed` and either `toward` or `from`; optionally `w`.
-        A unit such as ``"deg magnetic"`` marks directions relative to magnetic north
-    terms : options; the declination and the maximum speed are used
+    Columns are `depth`; `u` and `v`, or `speed` and either `toward` or `from`; optionally `w`. A
+    unit such as ``"deg magnetic"`` marks directions relative to magnetic north.
     """
     found = read_currents(table, terms)
     if found is None:
@@ -288,13 +279,9 @@ def read_currents(
 ) -> Floats | None:
     """Convert a table of currents to an array (n, 4) of depth [m] and u, v, w [m/s].
 
-    Return None if the table has mistakes; they are added to the `problems` of the table.
-
-    Parameters
-    ----------
-    table, terms : as in `read_current`
-    profile : (n,) increasing index of the profile of each row; None for a single profile. With an
-        index, missing values become NaN; without, they are mistakes
+    Return None if the table has mistakes; they are added to its `problems`. `profile` (n,) is the
+    increasing profile index of each row, or None. With an index, missing values become NaN instead
+    of mistakes.
     """
     columns, rows, before = table.columns, table.rows, len(table.problems)
     plain, turned = _from_magnetic_north(table, terms)
@@ -380,12 +367,8 @@ def read_water(
 ) -> DepthTable | SeaWater | None:
     """Read a profile of density [kg/m³], or of temperature and salinity, from a table.
 
-    Return None if the table has mistakes; they are added to the `problems` of the table.
-
-    Parameters
-    ----------
-    table : columns `depth`, and either `density` or `temperature` and `salinity`
-    density : plausible range of the density
+    Return None if the table has mistakes; they are added to its `problems`. The columns are
+    `depth`, and `density` or `temperature` and `salinity`.
     """
     values = _profile_by_name(table, {**_WATER, "density": density})
     if values is None:
@@ -398,7 +381,7 @@ def read_water(
 def read_profile(name: str, table: QuantityTable) -> DepthTable | None:
     """Parse a profile of `temperature` [°C] or `salinity` from a table.
 
-    Return None if the table has mistakes; they are added to the `problems` of the table.
+    Return None if the table has mistakes; they are added to its `problems`.
     """
     values = _profile_by_name(table, {"depth": _DEPTH, name: _WATER[name]})
     return None if values is None else values[name]

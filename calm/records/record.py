@@ -51,10 +51,10 @@ class Record(ABC):
     Attributes
     ----------
     time : (n,) increasing times
-    notes : rules by which the record was read, and doubts about it
-    source : names of the file and of its variables, and the position
+    notes : rules of reading, and doubts
+    source : names of the file and its variables, and the position
     cards : summary card of each file
-    labels : parts of a line that carry the instruments, if the levels have no depths; else empty
+    labels : parts of a line that carry the instruments, if the levels have no depths
     """
 
     time: NDArray[np.datetime64]
@@ -72,9 +72,8 @@ class Record(ABC):
     def profiles(self, start: int, stop: int) -> Levels:
         """Return the depths and velocities of the m profiles from `start` to `stop`.
 
-        The depths [m], (k,) or (m, k), are positive down, in any order. The velocities u, v and w
-        [m/s], each (m, k), are NaN in gaps; w is None without vertical velocity. Raise InputError
-        if the file is damaged.
+        Depths [m], (k,) or (m, k), are positive down, in any order. u, v and w [m/s], each (m, k),
+        are NaN in gaps; w may be None. Raise InputError if the file is damaged.
         """
 
     def flags(self, start: int, stop: int) -> NDArray[np.int8] | None:
@@ -95,9 +94,8 @@ class Record(ABC):
 def parse_period(text: str) -> Period:
     """Parse a period ``A/B`` of ISO 8601 times.
 
-    A year, month or day B is included as a whole. Either end may be missing, as in ``2026-03/`` or
-    ``../2026-03-31``. Raise UsageError if the text is not a period, or if the period ends before it
-    begins.
+    A year, month or day B is included as a whole. Either end may be open, as in ``2026-03/`` or
+    ``../2026-03-31``. Raise UsageError if the period is invalid.
     """
     first, slash, last = text.partition("/")
     if not slash:
@@ -130,12 +128,8 @@ def choose_profiles(
 ) -> tuple[Index, tuple[str, ...]]:
     """Return the indices of the profiles to read, in order of time, and notices on the choice.
 
-    Parameters
-    ----------
-    times : (n,) times in file order
-    period : first and last time to read; None for all times
-    every : n, to read only every n-th profile
-    path : path of the record, for messages
+    `times` (n,) are in file order. `period` is None for all times, and `every` is n for each n-th
+    profile.
 
     Raises
     ------

@@ -85,9 +85,9 @@ class SeaState:
     significant_height : Hs, four times the standard deviation of the elevation [m]
     peak_period : Tp [s]
     density : one-sided spectrum of the elevation [m² s/rad] over angular frequency [rad/s]
-    share : fraction of time of this sea state in a set of sea states
-    longest, shortest : longest and shortest peak period of the components [s]; None if there is
-        only one component. In a measured sea, `longest` extends `frequencies` to the lowest energy
+    share : fraction of time of this sea state in a set
+    longest, shortest : longest and shortest peak period [s] of several components. In a measured
+        sea, `longest` extends `frequencies` to the lowest energy
     """
 
     significant_height: float
@@ -127,11 +127,8 @@ def bretschneider(height: float, period: float) -> Density:
 def ochi_hubble(parts: Sequence[tuple[float, float, float]]) -> Density:
     """Return the combined spectrum of swell and wind sea of Ochi and Hubble 1976.
 
-    S = Σ ¼ ((4λ + 1)/4 ωp⁴)^λ / Γ(λ) Hs² ω^-(4λ+1) exp(-(4λ + 1)/4 (ωp/ω)⁴).
-
-    Parameters
-    ----------
-    parts : Hs [m], Tp [s] and λ of each component; a larger λ is narrower, and 1 is Bretschneider
+    S = Σ ¼ ((4λ + 1)/4 ωp⁴)^λ / Γ(λ) Hs² ω^-(4λ+1) exp(-(4λ + 1)/4 (ωp/ω)⁴). Each component has Hs
+    [m], Tp [s] and λ. A larger λ is narrower; 1 is Bretschneider.
     """
     terms = tuple((height, 2.0 * pi / period, narrow) for height, period, narrow in parts)
     return SpectralForm(_gamma_form, (terms,))
@@ -149,7 +146,7 @@ def jonswap(height: float, period: float, gamma: float = 3.3) -> Density:
     """Return the JONSWAP spectrum of a fetch-limited sea with Hs [m], Tp [s] and peakedness gamma.
 
     The spectrum is Bretschneider's times gamma^exp(-(ω - ωp)²/(2 σ² ωp²)), normalised to Hs. σ is
-    0.07 below the peak and 0.09 above (Hasselmann and others 1973).
+    0.07 below and 0.09 above the peak (Hasselmann and others 1973).
     """
     peak = 2.0 * pi / period
     fine = np.geomspace(0.3 * peak, 30.0 * peak, 4000)
@@ -172,19 +169,13 @@ def full_sea_period(height: float) -> float:
 
 
 def spectrum_of(kind: str, height: float, period: float | None, gamma: float = 3.3) -> SeaState:
-    """Return the sea state of a named spectrum.
+    """Return the sea state of a named spectrum, from `SPECTRA`.
 
-    Parameters
-    ----------
-    kind : name of the spectrum, from `SPECTRA`
-    height, period : Hs [m] and Tp [s]; with None, the period follows from the height
-    gamma : peakedness of "jonswap"
+    `height` is Hs [m] and `period` Tp [s]; without a period, Tp follows from Hs. `gamma` is the
+    peakedness of "jonswap".
 
-    Raises
-    ------
-    UsageError
-        The waves are higher, longer, shorter or steeper than the limits, or a period is given for
-        "ochi-hubble".
+    Raise UsageError if the waves are higher, longer, shorter or steeper than the limits, or if
+    "ochi-hubble" has a period.
     """
     if kind == "ochi-hubble":
         if period is not None:
@@ -237,7 +228,7 @@ def with_swell(sea: SeaState, height: float, period: float) -> SeaState:
     """Add a swell with Hs [m] and Tp [s], in the same direction, to a sea.
 
     The swell has the spectrum of Ochi and Hubble with λ = 3. Raise UsageError if the swell is
-    impossible, or if its period is not longer than the peak period of the sea.
+    impossible, or has no longer period than the sea.
     """
     spectrum_of("bretschneider", height, period, 1.0)
     if period <= sea.peak_period:
@@ -278,8 +269,8 @@ def _most_probable(height: float) -> SeaState:
 def measured_spectrum(path: Path) -> SeaState:
     """Read a measured spectrum from CSV, ``frequency[Hz],density[m^2/Hz]``, or from NetCDF.
 
-    NetCDF has the form of NDBC or WAVEWATCH III, at one position. Of several times, the highest sea
-    is used. Raise InputError if the file is not a valid spectrum.
+    A NetCDF file is like those of NDBC or WAVEWATCH III; its highest sea is used. Raise InputError
+    if the spectrum is invalid.
     """
     if holds_arrays(path):
         return _sea_of(path, *_spectral_arrays(path))
@@ -367,8 +358,8 @@ def _spectral_arrays(path: Path) -> tuple[Floats, Floats]:
 def scatter_states(path: Path, kind: str, gamma: float = 3.3) -> list[SeaState]:
     """Return the sea states of a scatter table, each with its share of the time.
 
-    The columns are ``significant_wave_height[m],peak_period[s],share``; the column `share` may also
-    hold counts. Raise InputError if the table has mistakes; the error lists all of them.
+    The columns are ``significant_wave_height[m],peak_period[s],share``; shares may be counts. Raise
+    InputError if the table has mistakes, and UsageError for "ochi-hubble".
     """
     rows = _numbered_rows(path, ("significant_wave_height[m]", "peak_period[s]", "share"))
     if kind == "ochi-hubble":

@@ -52,11 +52,11 @@ class CurrentValues:
 
     Attributes
     ----------
-    depth : (k,) or (n, k) depths of the levels [m]; NaN if unknown
+    depth : (k,) or (n, k) depths [m]; NaN if unknown
     u, v : (n, k) eastward and northward components [m/s]; NaN in gaps
     times : (n,) increasing times; None for a single profile
     water_depth : water depth [m]; inf if unknown
-    unit, factor : declared unit of speed, and the factor from this unit to m/s
+    unit, factor : declared unit of speed, and its factor to m/s
     good : (n, k) share of good pings; None if unknown
     """
 
@@ -101,11 +101,8 @@ def current_doubts(found: CurrentValues) -> Iterator[str]:
 def level_doubts(depth: Floats, known: NDArray[np.bool_], water_depth: float) -> Iterator[str]:
     """Report levels below the seabed, levels without values, and depth ranges without levels.
 
-    Parameters
-    ----------
-    depth : (k,) or (n, k) depths of the levels [m]
-    known : (n, k) mask of the values that are present
-    water_depth : water depth [m]; inf if unknown
+    Depths [m] are (k,) or (n, k); `known` (n, k) masks the values that are present. An unknown
+    water depth is inf.
     """
     there, levels = known.any(axis=0), _levels(depth, known)
     allowed = max(UNCOVERED * water_depth, FEW)
@@ -146,11 +143,8 @@ def _median(values: Floats) -> float:
 def left_out(top: float, bottom: float, water_depth: float, what: str = "current") -> str:
     """Return a message if a profile does not cover the whole water column, else "".
 
-    Parameters
-    ----------
-    top, bottom : depths of the first and the last level [m]
-    water_depth : water depth [m]; inf if unknown
-    what : quantity of the profile
+    `top` and `bottom` are the depths of the first and the last level [m]. An unknown water depth is
+    inf. `what` is the quantity.
     """
     allowed = max(UNCOVERED * water_depth, FEW)
     gaps = [f"above {say('depth', top)}"] if top > allowed else []
@@ -252,10 +246,8 @@ _ALIKE, _UNLIKE = 0.8, 0.5
 def _turned_levels(depth: Floats, current: NDArray[np.complex128]) -> Iterator[str]:
     """Report levels whose currents match both neighbours only after a rotation or a reflection.
 
-    Parameters
-    ----------
-    depth : (k,) increasing depths [m]
-    current : (n, k) eastward (real) and northward (imaginary) component [m/s]; NaN in gaps
+    Depths (k,) [m] increase. Currents (n, k) [m/s] have an eastward real and a northward imaginary
+    part.
     """
     turned = []
     for i in range(1, len(depth) - 1):
@@ -293,7 +285,7 @@ def series_doubts(values: Floats, times: Times, names: Sequence[str] = ("",)) ->
     ----------
     values : (n, k, c) values of c components in k series; NaN in gaps
     times : (n,) increasing times
-    names : (k,) text for each series in the messages, such as " at 20 m"
+    names : (k,) text for each series in messages, such as " at 20 m"
     """
     yield from _years(times)
     again = int((times[1:] == times[:-1]).sum())
@@ -387,12 +379,8 @@ def impossible_values(name: str, values: Floats) -> tuple[NDArray[np.bool_], str
 def exchanged_pair(values: Floats) -> tuple[int, int] | None:
     """Find the only two levels whose exchange makes a profile monotonic.
 
-    Return None if the profile is already monotonic, if no or more than one pair fits, or if there
-    are fewer than four levels or a NaN.
-
-    Parameters
-    ----------
-    values : mean value at each level, from top to bottom
+    Return None if the profile is already monotonic, no or several pairs fit, or values are missing
+    or fewer than four.
     """
     if len(values) < 4 or not np.isfinite(values).all():
         return None

@@ -72,7 +72,6 @@ class Velocity:
     up : upward velocity; None if missing
     turn : angle [degrees] from the direction variable to the direction of flow; None for components
     magnetic, true : whether the file states that directions refer to magnetic or to true north
-    notes : remarks on assumptions
     """
 
     names: tuple[str, str]
@@ -103,12 +102,9 @@ class Velocity:
 def find_velocity(dataset: xr.Dataset, *, regular: bool) -> Velocity:
     """Find the velocity variables of a dataset.
 
-    Raise UnreadableError if there is no current or more than one, or if the components are not
-    eastward and northward.
-
-    Parameters
-    ----------
-    regular : whether the grid has axes of latitude and longitude, so that x is east and y is north
+    If `regular`, the grid has axes of latitude and longitude, so that x is east and y is north.
+    Raise UnreadableError unless there is exactly one current, with eastward and northward
+    components.
     """
     reason = attributes.other_frame(dataset.attrs) or attributes.moving_platform(dataset)
     if reason is not None:
@@ -253,8 +249,7 @@ def with_components(dataset: xr.Dataset) -> xr.Dataset:
     """Return the dataset with a velocity `vel (dir, ...)` split into its components.
 
     The components are called ``vel[E]``, ``vel[N]`` and ``vel[U]``, with CF standard names. Any
-    other dataset is returned unchanged. Raise UnreadableError if the components are along beams or
-    instrument axes.
+    other dataset is unchanged. Raise UnreadableError for beam or instrument axes.
     """
     vectors = [name for name in _NAMES if name in dataset.data_vars]
     name = next((name for name in vectors if _DIRECTIONS in dataset[name].dims), None)
@@ -354,8 +349,8 @@ _GOOD_NAMES = re.compile(r"(?i)(perg|pg|pgd|percent_?good|prcnt_gd|pct_good)_?[1
 def good_variables(dataset: xr.Dataset, name: str) -> list[xr.DataArray]:
     """Return the variables whose sum is the share of good pings for a velocity.
 
-    Of a variable with four beams, only the first and fourth values are returned. In earth
-    coordinates, the two values are the shares of three-beam and four-beam solutions.
+    Of four beams, only the first and fourth values are returned. In earth coordinates, these are
+    the shares of three-beam and four-beam solutions.
     """
     dims = set(dataset[name].dims)
     there = [

@@ -123,11 +123,7 @@ class ComponentMaker:
     ) -> ImportedComponent:
         """Convert an anchor; the component has no weight if the file gives none.
 
-        Parameters
-        ----------
-        definition : definition of the anchor; None if the file has none
-        name : name in the layout
-        friction : friction coefficient in the layout; 0 if missing
+        `name` and `friction` are from the layout. A missing friction coefficient is 0.
         """
         values = definition.values if definition else KeyValues()
         figures: dict[str, FigureOrWord] = {}
@@ -147,10 +143,9 @@ class ComponentMaker:
         return component
 
     def buoy(self, definition: CableDefinition, *, afloat: bool) -> ImportedComponent:
-        """Convert a buoy: the float at the upper end of a mooring, or a towed body.
+        """Convert a buoy: the float of a mooring, or a towed body.
 
-        A submerged buoy becomes a point, as in WHOI Cable. A buoy at the surface has the hull in
-        the file.
+        A submerged buoy becomes a point, as in WHOI Cable; a buoy at the surface has a hull.
         """
         values, name = definition.values, definition.name
         shape = values["type"].text.lower() if "type" in values else "sphere"
@@ -193,11 +188,10 @@ class ComponentMaker:
         return component
 
     def _at_reference(self, wet: float, mass: float) -> tuple[float, float]:
-        """Convert a weight from the water of the file to reference water; return the weight and the
+        """Convert a weight from the file's water to reference water; return the weight and the
         mass.
 
-        The displaced volume follows from weight and mass. If the mass is impossible, the result is
-        the unchanged weight and a mass of 0.
+        If the mass is impossible, the weight is unchanged and the mass is 0.
         """
         if mass * KILOGRAM_FORCE < wet or mass <= 0.0:
             return wet, 0.0

@@ -143,11 +143,8 @@ CableItems = list[CableTerminal | CableSegment | CableBranch]
 class CableProblem:
     """Contents of a problem file.
 
-    Attributes
-    ----------
-    description, environment, analysis : values by key in the sections of these names
-    buoys, anchors, connectors, materials : definitions by name
-    layout : terminals, segments and branches, in file order
+    `description`, `environment` and `analysis` hold the values of these sections by key.
+    Definitions are by name. `layout` is in file order.
     """
 
     path: Path

@@ -27,12 +27,8 @@ _End = grammar.CableTerminal | str
 class CableLayout:
     """Converter of the layout in a problem file to pieces, or to legs of a net.
 
-    Attributes
-    ----------
-    problem : contents of the problem file
-    makers : converter of components
-    design : design to which pieces and legs are added; its water determines variable drag
-    nodes : number of nodes of the net so far
+    Pieces and legs are added to `design`, whose water determines variable drag. `nodes` counts the
+    nodes of the net so far.
     """
 
     problem: grammar.CableProblem

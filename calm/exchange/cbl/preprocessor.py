@@ -44,8 +44,8 @@ class Preprocessor:
         Raises
         ------
         InputError
-            A file cannot be read or may not be included, a directive is invalid, or a macro expands
-            without end.
+            A file is unreadable or forbidden, a directive is invalid, or a macro expands without
+            end.
         UsageError
             A macro of the user has an invalid name.
         """

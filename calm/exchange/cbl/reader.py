@@ -268,8 +268,8 @@ def _gridded_current(
 ) -> _Grid | None:
     """Read a current file; return None if the file does not exist.
 
-    The file begins with step, start and count for each of time, depth, x and y. The speeds in x, y
-    and z follow; depth varies fastest, then x, y and time. Remarks are added to `dropped`.
+    Step, start and count of time, depth, x and y come first, then speeds in x, y and z. Depth
+    varies fastest, then x, y and time.
     """
     folder = problem.path.parent
     path, outside = folder / value.text, problem.options.allow_include

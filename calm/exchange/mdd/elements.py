@@ -144,7 +144,7 @@ class MddElement:
     Attributes
     ----------
     length, width, diameter : sizes [m]; only a sphere has a diameter
-    is_line : whether the element is a wire, rope or chain, whose values are per metre
+    is_line : whether the element is a wire, rope or chain, with values per metre
     is_fastener : whether the element is a shackle, link or swivel
     lift : net buoyancy [kg or kg/m]
     mass : mass in air [kg]; None if unknown

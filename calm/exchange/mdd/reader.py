@@ -153,10 +153,10 @@ def _attach_clamps(
 def _position_by_share(
     design: model.ImportedDesign, host: float, share: float
 ) -> tuple[int, float] | None:
-    """Return the index of a clamp's piece, and the distance from the upper end of the piece [m].
+    """Return the index of a clamp's piece, and the distance from the piece's upper end [m].
 
-    `host` is the number of the element in the file, and `share` the fraction of the element's
-    length below the clamp. Return None if either is out of range.
+    `share` is the fraction of the element `host` (its number in the file) below the clamp. Return
+    None if `share` or `host` is out of range.
     """
     count, number = len(design.items), round(host) - 1
     if design.tow is not None:

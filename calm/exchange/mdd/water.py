@@ -15,18 +15,11 @@ def read_water(
 ) -> tuple[model.ImportedWater | None, CurrentRecord | None]:
     """Read the environment of a file, and the current record if the file has several profiles.
 
-    For a mooring, the variable `z` holds heights above the seabed, up to the water surface. For a
-    tow, `z` holds depths. The environment has the current of the first profile.
+    The variable `z` holds heights above the seabed up to the surface, or depths if `towed`. The
+    environment has the current of the first profile. Guesses about times and density are added to
+    `guessed`.
 
-    Parameters
-    ----------
-    towed : whether the file is a tow
-    guessed : list to which guesses about times and density are added
-
-    Raises
-    ------
-    ValueError
-        A height is negative or missing, or the variables have different sizes or gaps.
+    Raise ValueError if `z` is negative or incomplete, or if variables have gaps or different sizes.
     """
     levels = variables.reals("z").ravel()
     if not np.any(levels > 0.0):

@@ -118,12 +118,7 @@ class _System:
 def write_moordyn(exported: ExportedDesign) -> Exported:
     """Convert a line or the legs of a net to a MoorDyn file, and the current to a second file.
 
-    Raises
-    ------
-    UsageError
-        The design is a tow.
-    NoEquilibrium
-        The mooring has no equilibrium, so the positions are unknown.
+    Raise UsageError for a tow, and NoEquilibrium if the mooring has no equilibrium.
     """
     lines = exported.legs
     deepest = max(lines, key=lambda line: line.depth)

@@ -100,15 +100,7 @@ class ColumnUnit:
 def unit_called(text: str, what: str) -> ColumnUnit | None:
     """Parse a unit, ignoring words such as *wet*; return None if the text has no unit.
 
-    Parameters
-    ----------
-    text : text in brackets, in a row of units, or after a number
-    what : quantity in the column
-
-    Raises
-    ------
-    ValueError
-        The unit does not fit the quantity.
+    `what` is the quantity in the column. Raise ValueError if the unit does not fit this quantity.
     """
     plain = " ".join(text.replace("_", " ").split())
     while plain:
@@ -265,12 +257,8 @@ def _either(digits: str) -> str:
 def decimal_sign(cells: Iterable[tuple[str, str]]) -> tuple[str, str]:
     """Find the decimal symbol of a file; also return a remark on commas, empty without commas.
 
-    `cells` yields position and text of each cell that should have a number.
-
-    Raises
-    ------
-    ValueError
-        Both the point and the comma are decimal symbols, or numbers such as `1,250` are ambiguous.
+    `cells` yields the position and text of each cell that should have a number. Raise ValueError if
+    the numbers are contradictory, or ambiguous like `1,250`.
     """
     seen: dict[str, str] = {}
     doubtful: dict[str, tuple[str, str]] = {}  # position, and digits

@@ -94,9 +94,9 @@ class ListColumn:
     by_mass : whether forces are in kilograms
     per_metre : whether the values of lines are per metre
     known : whether the heading has a unit
-    whole : whether values are totals, for all pieces in a row or for the whole line
+    whole : whether values are totals for all pieces in a row, or for the whole line
     wrong : message about a mistake in the heading, or empty
-    twin : column for the same quantity per metre, if this column is per piece, or vice versa
+    twin : column for the same quantity per metre or per piece, whichever this column is not
     """
 
     index: int
@@ -179,16 +179,8 @@ def headings_of(rows: SheetRows, given: Mapping[str, str]) -> ListHeadings | Non
 def check_given(sheets: Mapping[str, SheetRows], given: Mapping[str, str], path: Path) -> None:
     """Check that `--columns` names known columns, and headings that occur in the list.
 
-    Parameters
-    ----------
-    sheets : rows by name of the sheet
-    given : heading by column name in CALM
-    path : path of the list
-
-    Raises
-    ------
-    InputError
-        A name or a heading is unknown.
+    `given` has the headings by column name in CALM. Raise InputError if a name or a heading is
+    unknown.
     """
     for what in (each for each in given if each not in COLUMNS):
         raise refused(

@@ -113,8 +113,8 @@ def _sheet_with_headings(
 ) -> tuple[str, SheetRows, ListHeadings] | None:  # fmt: skip
     """Return name, cells and headings of the only sheet with headings, or None.
 
-    A hidden sheet is used only if no visible sheet has headings. Remarks on hidden parts are added
-    to `remarks`. Raise InputError if several sheets have headings.
+    A hidden sheet is used only if no visible sheet has headings. Raise InputError if several sheets
+    have headings.
     """
     found = [
         (name, cells, headings)

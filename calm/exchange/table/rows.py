@@ -43,7 +43,6 @@ class ListRow:
     metre : names of the values that are per metre
     line : whether the row is a cable or chain; if None, role, kind and name decide
     hint : advice on missing values
-    problems : messages about mistakes
     """
 
     place: int
@@ -107,10 +106,7 @@ def rows_of(
 ) -> list[ListRow]:
     """Read the rows below the headings; rows with totals or without values are added to `dropped`.
 
-    Parameters
-    ----------
-    guessed : list to which guesses are added
-    bare : whether a row with only a name is a piece, because a library has the values
+    `bare` returns whether a row that has only a name is a piece, because a library has its values.
     """
     rows: list[ListRow] = []
     known = headings.columns
