@@ -30,12 +30,12 @@ class CatalogueMatch:
 
 
 def match_catalogue_entries(design: model.ImportedDesign) -> tuple[CatalogueMatch, ...]:
-    """Replace imported components by catalogue entries with similar names and equal values.
+    """Replace imported components by catalogue entries with similar names and values.
 
-    Names are similar if they share at least half the words in the component's name, and agree in
-    the grade. Kind, sizes, net buoyancy, drag, stiffness and loads must agree within `_TOLERANCE`,
-    if known. For a component without a size, only the net buoyancy is compared. The entry with the
-    most similar name is used.
+    Similar names share at least two words, and half the words in the component's name. Kind, grade,
+    sizes, net buoyancy, drag, stiffness and loads must agree if known, within `_TOLERANCE`. For a
+    component without a size, only grade and net buoyancy are compared. Of several entries, the
+    entry with the most similar name is used.
     """
     catalogue = Catalogue.load()
     entries = {id: entry for id, entry in catalogue.all().items() if isinstance(entry, Component)}

@@ -18,10 +18,10 @@ def _id_from_name(name: str) -> str:
 
 
 def ids_of(components: Iterable[ImportedComponent], taken: Iterable[str] = ()) -> dict[int, str]:
-    """Choose an id in the mooring file for each component; components with equal values share an
-    id.
+    """Choose an id in the mooring file for each component.
 
-    Return the ids by Python `id()` of the components. Ids in `taken` are not used.
+    Return the ids by Python `id()` of the components. Components with equal values share an id. Ids
+    in `taken` are not used.
     """
     components = list(components)
     ids: dict[int, str] = {}

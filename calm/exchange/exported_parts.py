@@ -96,8 +96,8 @@ class ExportedPart:
 
         Parameters
         ----------
-        density : uniform water density for the same drag in another program [kg/m³]; by default,
-            reference water
+        density : uniform density of the water in the other program [kg/m³]. The drag with this
+            density equals the drag at the depth of the part. By default, reference water
         along : whether the area is tangential instead of normal
         """
         own = (self.kt if along else self.kn) / (0.5 * REFERENCE_DENSITY)
@@ -106,11 +106,11 @@ class ExportedPart:
 
 @dataclass
 class PartLoad:
-    """Sums over the parts at one point or on one rigid segment, for water of uniform density
-    [kg/m³].
+    """Sums over the parts at one point or on one rigid segment.
 
     Attributes
     ----------
+    density : uniform density of the water [kg/m³]
     net, mass : net force [N] and mass [kg]
     area, along : normal and tangential drag areas [m²]
     """
@@ -150,8 +150,8 @@ class PartLoad:
 def unique_name(known: dict[str, str], name: str, figures: str) -> str:
     """Register values under a unique name, and return this name.
 
-    `known` holds registered values by name, and `figures` the new values as written in the file. A
-    number is appended to a preferred name in use.
+    `known` holds registered values by name. A number is appended to `name` if `name` is registered
+    with other values.
     """
     chosen, number = name, 1
     while known.setdefault(chosen, figures) != figures:
@@ -163,7 +163,7 @@ def unique_name(known: dict[str, str], name: str, figures: str) -> str:
 def place_along(path: Floats, share: float) -> Coordinates:
     """Interpolate the position at a fraction of the length of a part.
 
-    `path` has the node positions (n, 3). `share`, 0 to 1, counts from the first node.
+    `path` has the node positions (n, 3). `share`, from 0 to 1, is the fraction from the first node.
     """
     steps = np.linalg.norm(np.diff(path, axis=0), axis=1)
     along = np.concatenate([[0.0], np.cumsum(steps)])
@@ -187,7 +187,7 @@ class ExportedLine:
     Attributes
     ----------
     parts : parts without the anchor, from the top (of a tow: from the ship) down
-    anchor : the anchor, and its weight in water with its clamps [N]; None for a tow
+    anchor : the anchor, and the weight in water of anchor and clamps [N]; None for a tow
     depth : water depth [m]
     levels : current and density, from the surface down
     gravity : acceleration of gravity [m/s²]
@@ -196,7 +196,7 @@ class ExportedLine:
     afloat : whether the line reaches the surface
     has_draft : whether the hull of the float is known
     riding : net buoyancy in use and drag of the float, as fractions of the values when immersed
-    windage : wind area of the float [m²], and its drag coefficient
+    windage : wind area of the float [m²], and drag coefficient of this area
     omitted : features that no other program can represent
     solve : function that finds the equilibrium
     ends : upper and lower connection of a leg; None for a single line
@@ -252,11 +252,10 @@ class ExportedLine:
         return paths
 
     def float_as_point(self, density: float) -> tuple[float, float]:
-        """Return net force [N] and drag area [m²] of a point that loads the line like the submerged
-        float.
+        """Return net force [N] and drag area [m²] of a point in place of a submerged float.
 
-        Other programs place the point at the end of the line, in water of uniform `density`
-        [kg/m³]. Without an equilibrium, the values of the float itself are returned.
+        In water of uniform `density` [kg/m³], a point at the end of the line exerts the same load
+        as the float. Without an equilibrium, the values of the float itself are returned.
         """
         part = self.parts[0]
         own = part.net, part.area(density)

@@ -35,7 +35,7 @@ class Imported:
 
     Attributes
     ----------
-    file, format : the file that was read, and the name of its format
+    file, format : path and format name of the converted file
     text : text of the mooring file
     guessed, dropped : guessed values, and omitted features
     matched : components replaced by catalogue entries
@@ -62,7 +62,7 @@ def import_file(
     options: model.ImportOptions | None = None,
     match_catalogue: bool = False,
 ) -> Imported:
-    """Convert a file of another program to a mooring file, without writing the mooring file.
+    """Convert a file of another program to the text of a mooring file.
 
     Parameters
     ----------
@@ -155,8 +155,8 @@ def _check_readable(path: Path, output: Path, text: str) -> None:
 def environment_lines(path: Path, output: Path) -> list[str]:
     """Return the lines of the `environment` key in a file, for the mooring file `output`.
 
-    The path of a current file becomes relative to the folder of `output`. Raise InputError without
-    a readable `environment`.
+    The path of a current file becomes relative to the folder of `output`. Raise InputError if the
+    file is unreadable or has no `environment`.
     """
     found = read_document(path).data.get("environment")
     if not isinstance(found, dict) or not found:

@@ -64,8 +64,8 @@ class ListedInstrument:
     where : position in the list, for messages
     name, serial : empty if missing
     nominal : nominal depth [m]; NaN if unknown
-    clock, checked : lag of the clock [s], negative if early, and time of its measurement; None if
-        unknown
+    clock : lag of the clock [s], negative if early; None if unknown
+    checked : time at which the lag was measured; None if unknown
     remark : any other clock error, in words
     """
 
@@ -86,9 +86,9 @@ def in_words(late: float) -> str:
 def read_instrument_list(path: Path, seabed: float) -> list[ListedInstrument]:
     """Read the instruments of a list, in the order of the list.
 
-    Each instrument has a serial number, or a nominal depth and a name or clock error; others are
-    omitted. `seabed` is the water depth [m], to convert heights. Raise InputError if the list is
-    unreadable or has no such instrument.
+    Instruments without a serial number are omitted, unless they have a nominal depth and a name or
+    clock error. `seabed` is the water depth [m], to convert heights. Raise InputError if the list
+    is unreadable or no instrument remains.
     """
     head = read_head(path, _HEAD)
     if cf_files.engine_of(path):

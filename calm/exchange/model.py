@@ -31,7 +31,7 @@ class ImportOptions:
     columns : headings in a table, by column name in CALM
     elements : library of elements for values that a table lacks
     allow_include : whether files outside the folder may be included
-    sheet : sheet of a workbook; None if only one has a list
+    sheet : name of the sheet with the list; None if only one sheet has a list
     """
 
     defines: Mapping[str, str] = field(default_factory=dict)
@@ -143,7 +143,7 @@ class ImportedPiece:
 
 @dataclass(eq=False)
 class ImportedLeg:
-    """A leg of a net, with its pieces from the upper end.
+    """A leg of a net, with the pieces from the upper end down.
 
     `top` and `bottom` are the connections of the ends as in a mooring file, such as ``{join: A}``.
     An unneeded connection is empty.

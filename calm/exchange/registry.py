@@ -95,8 +95,8 @@ def register_format(
     ----------
     name : name for `--format` and `--to`, and name of the entry point
     detect : function that recognises a file; None if the user must give `--format`
-    read : function for import, or None
-    write : function for export, or None
+    read : function for import; None if the format cannot be imported
+    write : function for export; None if the format cannot be exported
     program : name of the program, for messages; by default, `name`
     takes_elements : whether `read` uses the library `ImportOptions.elements`
     writes_nets : whether `write` accepts designs with several legs
@@ -110,7 +110,7 @@ def register_format(
 
 
 def file_format(name: str) -> FileFormat:
-    """Return the format with a given name; its module is imported if needed.
+    """Return the format with a given name, and import the module of the format if needed.
 
     Raises
     ------

@@ -1,6 +1,6 @@
 """Attributes with a defined meaning: CF standard names, cell methods, coordinate frames and north.
 
-Free text is ignored, except for the direction words in long names and comments.
+Of the free text, only long names and comments about directions are interpreted.
 """
 
 from __future__ import annotations
@@ -91,8 +91,8 @@ def other_frame(attributes: Mapping[Any, Any]) -> str | None:
 def moving_platform(dataset: xr.Dataset) -> str | None:
     """Return a message if a dataset comes from a moving ship, else None.
 
-    Evidence is the attribute `source_program`, or a median speed of bottom track or platform that
-    is too high for a mooring.
+    Evidence is the attribute `source_program`, or a median speed over the ground that is too high
+    for a mooring.
     """
     program = str(dataset.attrs.get("source_program", "")).strip()
     if program.lower() in _OF_SHIPS:

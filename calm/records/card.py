@@ -53,17 +53,17 @@ class VariableSummary:
 
 @dataclass(frozen=True, eq=False)
 class ReadCard:
-    """Summary of the contents of a file, for the user to confirm that the file is the right one.
+    """Summary of the contents of a file.
 
     Attributes
     ----------
     texts : title, summary and comment, quoted from the file
-    variables : by role, such as east, north, depth
+    variables : summaries by role, such as east, north, depth
     levels : number of levels or of instruments
     times : (n,) increasing times; empty for a profile without a time
     clock : name and unit of the time variable
     flags : number of readings excluded by each flag variable
-    declination : rotation of currents from magnetic to true north [degrees], if any
+    declination : rotation of currents from magnetic to true north [degrees]
     """
 
     file: str

@@ -262,7 +262,7 @@ def first_present(dataset: xr.Dataset, names: Iterable[str]) -> list[str]:
 
 
 def known_values(variable: xr.DataArray) -> NDArray[np.float64]:
-    """Return the values of a variable in its declared unit, NaN outside its valid range.
+    """Return the values of a variable in the declared unit, NaN outside the valid range.
 
     As in the NetCDF User Guide, limits with the type of the packed values refer to packed values.
     """

@@ -41,7 +41,7 @@ class CurrentDataset:
     turned : notice of a rotation from magnetic to true north, or empty
     rules : rules by which the file was read
     source : names of the variables, and the position of the grid column
-    labels : parts of a line that carry the instruments, if the levels have no depths
+    labels : parts of a line that carry the instruments, if the levels have no depths; else empty
     """
 
     def __init__(self, dataset: xr.Dataset, terms: Terms) -> None:
@@ -143,7 +143,7 @@ class CurrentDataset:
         return np.asarray(np.maximum.reduce(every), np.int8)
 
     def inspected(self, file: str, index: Index) -> tuple[ReadCard, list[str]]:
-        """Return the summary card of the profiles at given times, and doubts about their values.
+        """Return the summary card of the profiles at given times, and doubts about the values.
 
         In a large record, a sample of evenly spaced profiles is used. The indices of the times must
         increase.

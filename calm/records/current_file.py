@@ -173,7 +173,7 @@ def _time_of_row(row: CellRow, problems: list[Problem]) -> np.datetime64 | None:
 class CsvRecord(Record):
     """A record in CSV, read once into memory.
 
-    For the parameters and errors, see `open_record`. An error lists all mistakes of the file.
+    For the parameters and errors, see `open_record`. An error lists up to `MOST_PROBLEMS` mistakes.
     """
 
     def __init__(self, path: Path, terms: Terms, period: Period | None, every: int) -> None:

@@ -31,8 +31,8 @@ class Terms:
     place : position for the nearest column of a gridded file
     declination : magnetic declination [degrees], positive to the east, for rotation to true north
     maximum_speed : speed [m/s] above which a current is a mistake
-    on_the_line : whether the file holds instruments on a mooring line, with levels labelled by part
-        and bad currents kept with their flags
+    on_the_line : whether the file holds instruments on a mooring line. Levels may then be labelled
+        by part of the line, and bad currents keep their flags
     """
 
     water_depth: float = inf
@@ -107,10 +107,10 @@ def time_text(time: np.datetime64) -> str:
 
 
 def choose_time(times: NDArray[np.datetime64], wanted: str | None) -> tuple[int, str | None]:
-    """Return the index of the time nearest to a requested time, and a notice if they differ.
+    """Return the index of the time nearest to a requested time, and a notice if the times differ.
 
-    Raise TimeChoiceError if the requested time is outside the record or occurs twice. A request is
-    needed if the file has several times.
+    A request is needed if the file has several times. Raise TimeChoiceError if the file has no
+    times, or if the requested time is outside the record or occurs twice.
     """
     if not len(times):
         raise TimeChoiceError("the file has no times")

@@ -264,7 +264,7 @@ def cells_in(text: str) -> list[list[str]]:
 def dialect_of(lines: Sequence[str], *, words: bool = False) -> Dialect:
     """Find the separator and the decimal symbol of a table.
 
-    The decimal symbol is a comma if a comma cannot separate thousands and no number has a point.
+    The decimal symbol is a comma if some comma cannot separate thousands and no number has a point.
 
     Parameters
     ----------

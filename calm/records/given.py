@@ -30,8 +30,8 @@ def as_file(given: Given) -> Iterator[Path]:
 def as_files(given: Any, folder: Path, name: str) -> list[str]:
     """Write datasets and tables to a folder, and return the paths of all records.
 
-    A dataset must be like a NetCDF record, and a table like a CSV record, with times in a column or
-    the index.
+    A dataset needs the contents of a NetCDF record, and a table the columns of a CSV record. The
+    index of a table may hold the times.
 
     Parameters
     ----------

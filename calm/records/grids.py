@@ -40,8 +40,8 @@ _PLACES = {
 class GridColumn:
     """A water column in a gridded dataset.
 
-    `index` is by horizontal dimension. `place` is latitude and longitude, or None if the file does
-    not give the position. `notes` explain the choice.
+    `index` is the index along each horizontal dimension. `place` is None if the file does not give
+    the position. `notes` explain the choice of the column.
     """
 
     index: dict[str, int]
@@ -167,10 +167,10 @@ def _indices_around(
 
 
 def _nearest(away: Floats) -> NDArray[Any]:
-    """Return the indices of the points nearest to a position along an axis, in axis order.
+    """Return the indices of the grid points nearest to a position along an axis, in axis order.
 
-    There are at most ``2 REACH + 1`` points. `away` has the signed distances from the position
-    [degrees]; an axis around the globe may give both ends.
+    `away` has the signed distances from the position [degrees]. There are at most ``2 REACH + 1``
+    points. On an axis around the globe, both ends may be included.
     """
     near = np.argsort(np.abs(away), kind="stable")[: 2 * REACH + 1]
     return near[np.argsort(away[near], kind="stable")]
@@ -270,7 +270,7 @@ class SeabedGrid:
     ----------
     latitude, longitude : origin of the mooring coordinates [degrees]
     reach : half the side of the square around the origin that is read [m]
-    east, north : position of the point from the origin [m]
+    east, north : distances of the point from the origin [m]
     """
 
     path: str = field(compare=False)

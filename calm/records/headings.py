@@ -28,8 +28,8 @@ _MAGNETIC = re.compile(r"(?i)\s*\bmag(netic)?$")
 def heading(column: str, dimensions: Sequence[str] = ()) -> tuple[str, str]:
     """Split a heading into its name and its unit; a missing unit is empty.
 
-    With `dimensions` (keys of `calm.units.DIMENSIONS`), a known unit needs no brackets; units of
-    these dimensions are preferred.
+    Units are in brackets. With `dimensions` (keys of `calm.units.DIMENSIONS`), known units are also
+    found without brackets, preferably units of these dimensions.
     """
     text = " ".join(column.split())
     bracketed = _BRACKETED.fullmatch(text)
@@ -211,8 +211,8 @@ def read_named_columns(
 def read_time_columns(path: Path, dimensions: Sequence[str], example: str) -> TimeColumns:
     """Read a table of times and quantities; the heading of a quantity has a label and a unit.
 
-    `dimensions` are the allowed ones, keys of `calm.units.DIMENSIONS`. `example` is a sample
-    heading for messages. Raise InputError with up to `MOST_PROBLEMS` mistakes.
+    `dimensions` are the allowed dimensions of columns, keys of `calm.units.DIMENSIONS`. `example`
+    is a sample heading for messages. Raise InputError with up to `MOST_PROBLEMS` mistakes.
     """
     table = delimited.read_table(path, f"time,{example}")
     header = table.header

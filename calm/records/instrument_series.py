@@ -82,10 +82,10 @@ class InstrumentSeries(Identity):
     time : (n,) increasing times
     value : (n,) values in the unit of the quantity; NaN if missing or rejected
     dropped : number of readings rejected by their flags
-    below : distance of a profiler's bin below the profiler [m]; else 0
+    below : distance of a profiler's bin below the profiler [m]; 0 for other instruments
     note : doubts and assumptions
     pressure : median pressure in the file [dbar], or NaN
-    called : label stated in the file, also if the user gives another label
+    called : label stated in the file, even if the user gives another label
     """
 
     time: NDArray[np.datetime64]
@@ -134,7 +134,7 @@ def read_series(
     names : keys of `QUANTITIES_MEASURED`
     flags : accepted quality flags; flag 8 is never accepted
     seabed : water depth [m], to convert heights above the seabed; NaN if unknown
-    usual : depth [m] by label, for files without pressures and nominal depth
+    usual : depth [m] by label, for files with neither pressures nor a nominal depth
 
     Raises
     ------
@@ -165,8 +165,7 @@ def read_series(
 def files_given(given: Sequence[str]) -> list[tuple[str, Path]]:
     """Return the label and the path of each file given; the label may be empty.
 
-    A folder stands for its data files. Raise InputError if a file, or the data files of a folder,
-    are missing.
+    A folder stands for the data files in the folder. Raise InputError if there is no file.
     """
     found: list[tuple[str, Path]] = []
     problems = []
@@ -405,8 +404,8 @@ def practical_salinity(
     Parameters
     ----------
     taken : variables as returned by `conductivity_in`
-    values : their values, in the units of the file and with equal shapes
-    depth : depth [m], used without pressure
+    values : values of these variables, in the units of the file and with equal shapes
+    depth : depth used if a pressure is missing [m]
     """
     import gsw
 
@@ -421,6 +420,7 @@ def practical_salinity(
     }
     pressure = parts.get("pressure", np.full_like(parts["temperature"], np.nan))
     known = np.isfinite(pressure)
+    # a depth error of 10 m changes salinity by 0.004
     pressure = np.where(known, pressure, pressure_at(depth, _LATITUDE))
     with np.errstate(invalid="ignore"):
         salinity: Floats = gsw.SP_from_C(parts["conductivity"], parts["temperature"], pressure)
@@ -449,9 +449,10 @@ def _decibars(variable: xr.DataArray, values: Floats) -> Floats:
 def named(dataset: xr.Dataset, sought: Sequence[str], usual: Sequence[str]) -> list[str]:
     """Return the names of the variables of a quantity.
 
-    The first standard name of `sought` in the dataset takes precedence over the names in `usual`,
-    which decide between several variables. Raise UnreadableError if the choice stays ambiguous, or
-    if a variable with a usual name has another standard name.
+    Variables with the first standard name of `sought` in the dataset take precedence, else names in
+    `usual` count. Of several variables with one standard name, those with a usual name are
+    returned. Raise UnreadableError if there are none, or if a usual name belongs to another
+    standard name.
     """
     there = _standard(dataset, sought)
     known = [one for one in usual if one in (there or dataset.data_vars)]

@@ -42,7 +42,7 @@ class LevelDepths:
     variable : level variable; its dimensions are dimensions of the velocity
     factor : signed factor to metres; negative if values increase upwards
     start : depth at which the values are zero [m]
-    instrument : variable for an instrument depth to add, and its factor to metres; or None
+    instrument : depth variable of an instrument, and its factor to metres; this depth is added
     """
 
     variable: xr.DataArray
@@ -82,8 +82,8 @@ def find_levels(
     """Find the depths of the levels of a velocity; moving levels take precedence over fixed ones.
 
     `level` and `time` are dimensions of the velocity, or None. `water_depth` [m] converts heights
-    above the seabed. Raise UnreadableError if there are no levels, or if the direction of increase
-    is unclear.
+    above the seabed. Raise UnreadableError if there are no levels, or if it is unclear whether
+    values increase upwards or downwards.
     """
     standard, wanted = dataset.cf.standard_names, {level} - {None}
     names = [

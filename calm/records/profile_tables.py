@@ -33,9 +33,8 @@ class QuantityTable:
 
     Attributes
     ----------
-    columns : headings with units, such as ``"depth m"`` or ``"depth[m]"``; without a unit in the
-        heading, each value has its own unit
-    rows : numbers, or quantities with a unit
+    columns : headings with units, such as ``"depth m"`` or ``"depth[m]"``
+    rows : numbers, or quantities with a unit if the heading has none
     problems : list to which mistakes are added
     """
 
@@ -158,7 +157,7 @@ def check_depths(
     rows: Integers,
     profile: Integers | None = None,
 ) -> None:
-    """Check that depths are within 0 and `DEEPEST`, and increase within each profile.
+    """Check that depths are between 0 and `DEEPEST`, and increase within each profile.
 
     Mistakes are added to the `problems` of the table. Values are in SI units by column name.
     `profile` is the profile index of each row, or None for a single profile.
@@ -221,8 +220,8 @@ _WATER = {"depth": _DEPTH, "density": DENSITY, "temperature": TEMPERATURE, "sali
 class CurrentTable:
     """A current profile: eastward, northward and upward velocity [m/s] at increasing depths [m].
 
-    `record` is the source file with the options for reading; None if not from a record. `doubts`
-    are remarks on suspicious directions.
+    `record` is the record file and the options for reading, or None. `doubts` are remarks on
+    suspicious directions.
     """
 
     depth: tuple[float, ...]
@@ -253,8 +252,8 @@ class SeaWater:
 def read_current(table: QuantityTable, terms: Terms = _DEFAULT_TERMS) -> CurrentTable | None:
     """Parse a current profile; return None and record the problems if the table has mistakes.
 
-    Columns are `depth`; `u` and `v`, or `speed` and either `toward` or `from`; optionally `w`. A
-    unit such as ``"deg magnetic"`` marks directions relative to magnetic north.
+    Columns are `depth`, optionally `w`, and either `u` and `v`, or `speed` and one of `toward` and
+    `from`. A unit such as ``"deg magnetic"`` marks directions relative to magnetic north.
     """
     found = read_currents(table, terms)
     if found is None:
@@ -279,9 +278,9 @@ def read_currents(
 ) -> Floats | None:
     """Convert a table of currents to an array (n, 4) of depth [m] and u, v, w [m/s].
 
-    Return None if the table has mistakes; they are added to its `problems`. `profile` (n,) is the
-    increasing profile index of each row, or None. With an index, missing values become NaN instead
-    of mistakes.
+    Return None and record the problems if the table has mistakes. `profile` (n,) is the increasing
+    profile index of each row; missing values then become NaN. Without `profile`, missing values are
+    mistakes.
     """
     columns, rows, before = table.columns, table.rows, len(table.problems)
     plain, turned = _from_magnetic_north(table, terms)
@@ -367,8 +366,8 @@ def read_water(
 ) -> DepthTable | SeaWater | None:
     """Read a profile of density [kg/m³], or of temperature and salinity, from a table.
 
-    Return None if the table has mistakes; they are added to its `problems`. The columns are
-    `depth`, and `density` or `temperature` and `salinity`.
+    Return None and record the problems if the table has mistakes. Columns are `depth`, and
+    `density` or `temperature` and `salinity`.
     """
     values = _profile_by_name(table, {**_WATER, "density": density})
     if values is None:
@@ -381,7 +380,7 @@ def read_water(
 def read_profile(name: str, table: QuantityTable) -> DepthTable | None:
     """Parse a profile of `temperature` [°C] or `salinity` from a table.
 
-    Return None if the table has mistakes; they are added to its `problems`.
+    Return None and record the problems if the table has mistakes.
     """
     values = _profile_by_name(table, {"depth": _DEPTH, name: _WATER[name]})
     return None if values is None else values[name]

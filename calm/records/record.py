@@ -52,9 +52,9 @@ class Record(ABC):
     ----------
     time : (n,) increasing times
     notes : rules of reading, and doubts
-    source : names of the file and its variables, and the position
+    source : names of the file and of the variables, and the position
     cards : summary card of each file
-    labels : parts of a line that carry the instruments, if the levels have no depths
+    labels : parts of a line that carry the instruments, if the levels have no depths; else empty
     """
 
     time: NDArray[np.datetime64]
@@ -73,7 +73,8 @@ class Record(ABC):
         """Return the depths and velocities of the m profiles from `start` to `stop`.
 
         Depths [m], (k,) or (m, k), are positive down, in any order. u, v and w [m/s], each (m, k),
-        are NaN in gaps; w may be None. Raise InputError if the file is damaged.
+        are NaN in gaps. w is None without vertical velocity. Raise InputError if the file is
+        damaged.
         """
 
     def flags(self, start: int, stop: int) -> NDArray[np.int8] | None:
@@ -128,8 +129,8 @@ def choose_profiles(
 ) -> tuple[Index, tuple[str, ...]]:
     """Return the indices of the profiles to read, in order of time, and notices on the choice.
 
-    `times` (n,) are in file order. `period` is None for all times, and `every` is n for each n-th
-    profile.
+    `times` (n,) are in file order. `period` is None for all times. Every n-th profile is read, with
+    n in `every`.
 
     Raises
     ------
@@ -173,7 +174,7 @@ def part(index: Index, start: int, stop: int) -> Index:
     Parameters
     ----------
     index : file indices of all chosen profiles
-    start, stop : first chosen profile, and the one after the last
+    start, stop : positions among the chosen profiles; `stop` is excluded
     """
     if not isinstance(index, slice):
         return index[start:stop]

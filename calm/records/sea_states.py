@@ -86,8 +86,8 @@ class SeaState:
     peak_period : Tp [s]
     density : one-sided spectrum of the elevation [m² s/rad] over angular frequency [rad/s]
     share : fraction of time of this sea state in a set
-    longest, shortest : longest and shortest peak period [s] of several components. In a measured
-        sea, `longest` extends `frequencies` to the lowest energy
+    longest, shortest : longest and shortest peak period of several components [s]. In a measured
+        sea, `longest` makes `frequencies` begin at the lowest frequency with energy
     """
 
     significant_height: float
@@ -128,7 +128,7 @@ def ochi_hubble(parts: Sequence[tuple[float, float, float]]) -> Density:
     """Return the combined spectrum of swell and wind sea of Ochi and Hubble 1976.
 
     S = Σ ¼ ((4λ + 1)/4 ωp⁴)^λ / Γ(λ) Hs² ω^-(4λ+1) exp(-(4λ + 1)/4 (ωp/ω)⁴). Each component has Hs
-    [m], Tp [s] and λ. A larger λ is narrower; 1 is Bretschneider.
+    [m], Tp [s] and λ. A larger λ gives a narrower spectrum; λ = 1 is Bretschneider.
     """
     terms = tuple((height, 2.0 * pi / period, narrow) for height, period, narrow in parts)
     return SpectralForm(_gamma_form, (terms,))
@@ -145,8 +145,8 @@ def _gamma_form(parts: tuple[tuple[float, float, float], ...], omega: Floats) ->
 def jonswap(height: float, period: float, gamma: float = 3.3) -> Density:
     """Return the JONSWAP spectrum of a fetch-limited sea with Hs [m], Tp [s] and peakedness gamma.
 
-    The spectrum is Bretschneider's times gamma^exp(-(ω - ωp)²/(2 σ² ωp²)), normalised to Hs. σ is
-    0.07 below and 0.09 above the peak (Hasselmann and others 1973).
+    The Bretschneider spectrum times gamma^exp(-(ω - ωp)²/(2 σ² ωp²)) is normalised to Hs. σ is 0.07
+    below and 0.09 above the peak (Hasselmann and others 1973).
     """
     peak = 2.0 * pi / period
     fine = np.geomspace(0.3 * peak, 30.0 * peak, 4000)
@@ -228,7 +228,7 @@ def with_swell(sea: SeaState, height: float, period: float) -> SeaState:
     """Add a swell with Hs [m] and Tp [s], in the same direction, to a sea.
 
     The swell has the spectrum of Ochi and Hubble with λ = 3. Raise UsageError if the swell is
-    impossible, or has no longer period than the sea.
+    impossible, or if the period does not exceed that of the sea.
     """
     spectrum_of("bretschneider", height, period, 1.0)
     if period <= sea.peak_period:
@@ -269,8 +269,8 @@ def _most_probable(height: float) -> SeaState:
 def measured_spectrum(path: Path) -> SeaState:
     """Read a measured spectrum from CSV, ``frequency[Hz],density[m^2/Hz]``, or from NetCDF.
 
-    A NetCDF file is like those of NDBC or WAVEWATCH III; its highest sea is used. Raise InputError
-    if the spectrum is invalid.
+    NetCDF files of NDBC and WAVEWATCH III are supported. Of several times, the highest sea is used.
+    Raise InputError if the spectrum is invalid.
     """
     if holds_arrays(path):
         return _sea_of(path, *_spectral_arrays(path))

@@ -308,7 +308,7 @@ FAR_APART = np.timedelta64(12, "h")
 
 
 def step_doubts(times: Times) -> Iterator[str]:
-    """Yield a doubt if the time between profiles is too long to resolve tides and peaks."""
+    """Report a time between profiles that is too long to resolve tides and peaks."""
     if len(times) > 1 and (step := np.median(np.diff(np.sort(times)))) >= FAR_APART:
         yield (
             f"the {len(times)} profiles are {step / np.timedelta64(1, 'h'):.4g} h apart, so tides "
@@ -379,8 +379,8 @@ def impossible_values(name: str, values: Floats) -> tuple[NDArray[np.bool_], str
 def exchanged_pair(values: Floats) -> tuple[int, int] | None:
     """Find the only two levels whose exchange makes a profile monotonic.
 
-    Return None if the profile is already monotonic, no or several pairs fit, or values are missing
-    or fewer than four.
+    Return None if the profile is already monotonic, or if no pair or several pairs fit. At least
+    four values are needed, and no NaN.
     """
     if len(values) < 4 or not np.isfinite(values).all():
         return None

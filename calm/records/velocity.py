@@ -70,7 +70,8 @@ class Velocity:
     ----------
     names : eastward and northward velocity, or speed and direction
     up : upward velocity; None if missing
-    turn : angle [degrees] from the direction variable to the direction of flow; None for components
+    turn : angle to add to the direction variable for the direction of flow [degrees]; None for
+        components
     magnetic, true : whether the file states that directions refer to magnetic or to true north
     """
 
@@ -211,7 +212,7 @@ def _checked(dataset: xr.Dataset, name: str) -> str:
 def layers_of(dataset: xr.Dataset) -> set[str]:
     """Return the names of layer coordinates, and the names of their dimensions.
 
-    A layer coordinate has the attribute `bounds`. Means over its layers count as values.
+    A layer coordinate has the attribute `bounds`. A mean over a layer counts as a value.
     """
     bounded = [name for name, one in dataset.variables.items() if "bounds" in one.attrs]
     return {str(each) for name in bounded for each in (name, *dataset[name].dims)}
@@ -246,10 +247,10 @@ _DIRECTIONS = "dir"
 
 
 def with_components(dataset: xr.Dataset) -> xr.Dataset:
-    """Return the dataset with a velocity `vel (dir, ...)` split into its components.
+    """Return the dataset with a velocity `vel (dir, ...)` split into components.
 
-    The components are called ``vel[E]``, ``vel[N]`` and ``vel[U]``, with CF standard names. Any
-    other dataset is unchanged. Raise UnreadableError for beam or instrument axes.
+    The components have names such as ``vel[E]``, and CF standard names. Any other dataset is
+    unchanged. Raise UnreadableError if the components are along beams or instrument axes.
     """
     vectors = [name for name in _NAMES if name in dataset.data_vars]
     name = next((name for name in vectors if _DIRECTIONS in dataset[name].dims), None)
@@ -349,8 +350,8 @@ _GOOD_NAMES = re.compile(r"(?i)(perg|pg|pgd|percent_?good|prcnt_gd|pct_good)_?[1
 def good_variables(dataset: xr.Dataset, name: str) -> list[xr.DataArray]:
     """Return the variables whose sum is the share of good pings for a velocity.
 
-    Of four beams, only the first and fourth values are returned. In earth coordinates, these are
-    the shares of three-beam and four-beam solutions.
+    Of four beams, only the first and fourth values are returned. In earth coordinates, the first
+    value counts three-beam and the fourth four-beam solutions.
     """
     dims = set(dataset[name].dims)
     there = [

@@ -188,10 +188,9 @@ class ComponentMaker:
         return component
 
     def _at_reference(self, wet: float, mass: float) -> tuple[float, float]:
-        """Convert a weight from the file's water to reference water; return the weight and the
-        mass.
+        """Convert a weight from the file's water to reference water; also return the mass.
 
-        If the mass is impossible, the weight is unchanged and the mass is 0.
+        If the mass is impossible, the weight is unchanged and the returned mass is 0.
         """
         if mass * KILOGRAM_FORCE < wet or mass <= 0.0:
             return wet, 0.0

@@ -51,10 +51,10 @@ class KeyValue:
         return self.formula.at(**values)
 
     def at(self, depth: float) -> float:
-        """Evaluate the formula or table at a depth; `depth` may also be a speed or a strain in a
-        table.
+        """Evaluate the formula or table at a depth.
 
-        A table is interpolated linearly, and extrapolated beyond its ends.
+        In a table of speeds or strains, `depth` is a speed or a strain. A table is interpolated
+        linearly, and extrapolated beyond the ends.
         """
         if not self.rows:
             return self.number(H=depth, h=depth, t=0.0)
@@ -143,8 +143,8 @@ CableItems = list[CableTerminal | CableSegment | CableBranch]
 class CableProblem:
     """Contents of a problem file.
 
-    `description`, `environment` and `analysis` hold the values of these sections by key.
-    Definitions are by name. `layout` is in file order.
+    `description`, `environment` and `analysis` are the sections of these names, by key. Buoys,
+    anchors, connectors and materials are by name. `layout` is in file order.
     """
 
     path: Path

@@ -28,6 +28,8 @@ class _Macro:
     parameters: tuple[str, ...] | None = None
 
 
+# C preprocessor libraries do not limit macro expansion, split `6e3` if `e3` is a macro, and accept
+# a comment without an end
 @dataclass
 class Preprocessor:
     """Preprocessor for problem files, which works like the C preprocessor."""

@@ -39,8 +39,8 @@ def piece_of(element: MddElement) -> model.ImportedPiece:
 def rigid(element: MddElement) -> model.ImportedComponent:
     """Convert a rigid or clamped element to a component.
 
-    As in Mooring Design & Dynamics, an element with a diameter is a sphere, whatever its length. An
-    element with only a width is a cylinder, without drag on its end faces.
+    As in Mooring Design & Dynamics, an element with a diameter is a sphere of any length. An
+    element with only a width is a cylinder without drag on the end faces.
     """
     lift = element.lift * KILOGRAM_FORCE
     role = role_of(element.name, lift, fastener=element.is_fastener)
@@ -129,7 +129,7 @@ def _flexible(element: MddElement) -> model.ImportedComponent:
 
 
 def anchor_of(element: MddElement) -> model.ImportedComponent:
-    """Convert the lowest element to an anchor; its weight in the file may have either sign."""
+    """Convert the lowest element to an anchor; the weight in the file may have either sign."""
     figures: dict[str, model.FigureOrWord] = {
         "weight": abs(element.lift) * KILOGRAM_FORCE,
         "length": element.length,

@@ -50,9 +50,10 @@ _COLUMNS = {
 
 @dataclass(frozen=True)
 class _File:
-    """Points and line types by name, and lines; `at` has the lines that meet at each point.
+    """Contents of a MoorDyn file: points and line types by name, and lines.
 
-    `depth` [m] and `gravity` [m/s²] are values of the water. Pieces are added to `design`.
+    `at` has the lines that meet at each point, by point name. `depth` is the water depth [m].
+    Pieces are added to `design`.
     """
 
     points: dict[str, _Row]

@@ -87,16 +87,16 @@ _MEASURES = {"length", "buoyancy", "weight", "mass"}
 
 @dataclass(frozen=True)
 class ListColumn:
-    """A column of a list: its index, its heading, and its conversion factor to SI.
+    """A column of a list: index, heading, and conversion factor to SI.
 
     Attributes
     ----------
     by_mass : whether forces are in kilograms
     per_metre : whether the values of lines are per metre
     known : whether the heading has a unit
-    whole : whether values are totals for all pieces in a row, or for the whole line
+    whole : whether values are totals, for all pieces in a row or for the whole line
     wrong : message about a mistake in the heading, or empty
-    twin : column for the same quantity per metre or per piece, whichever this column is not
+    twin : second column for the same quantity; one column is per metre, the other per piece
     """
 
     index: int

@@ -38,7 +38,8 @@ Library = Mapping[str, ListRow]
 def read_library(path: Path) -> Library:
     """Read elements from `mdcodes.mat` of Mooring Design & Dynamics, or from a table or workbook.
 
-    Of elements with the same name, the first is used. Raise InputError without readable elements.
+    Of elements with the same name, the first is used. Raise InputError if the file is unreadable or
+    has no elements.
     """
     content = read_content(path, largest=200_000_000)
     elements = _of_matrices(path) if is_mat(content) else _of_sheets(path)

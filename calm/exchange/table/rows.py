@@ -106,7 +106,7 @@ def rows_of(
 ) -> list[ListRow]:
     """Read the rows below the headings; rows with totals or without values are added to `dropped`.
 
-    `bare` returns whether a row that has only a name is a piece, because a library has its values.
+    `bare` decides whether a row with only a name is a piece, because a library has the values.
     """
     rows: list[ListRow] = []
     known = headings.columns
