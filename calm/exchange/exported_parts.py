@@ -92,13 +92,11 @@ class ExportedPart:
         return max(REFERENCE_DENSITY * volume - weighed, _LEAST_MASS * abs(weighed))
 
     def area(self, density: float | None = None, *, along: bool = False) -> float:
-        """Return drag coefficient times area [m²], per metre for a cable.
+        """Return drag coefficient times area [m²], per metre for a cable; tangential if `along`,
+        else normal.
 
-        Parameters
-        ----------
-        density : uniform density of the water in the other program [kg/m³]. The drag with this
-            density equals the drag at the depth of the part. By default, reference water
-        along : whether the area is tangential instead of normal
+        `density` is the uniform density of the water in the other program [kg/m³]. The drag in that
+        water equals the drag at the depth of the part. By default, the area is for reference water.
         """
         own = (self.kt if along else self.kn) / (0.5 * REFERENCE_DENSITY)
         return own if density is None else own * self.density / density

@@ -31,11 +31,8 @@ def export_file(
 ) -> Exported:
     """Convert a mooring or a tow to the file of another program.
 
-    Parameters
-    ----------
-    to : name of a registered format
-    environment : name in the file, or path of an environment file
-    catalogs : component catalogues, as in `calm.load`
+    `to` is a registered format, and `environment` a name in the file or the path of an environment
+    file.
 
     Raises
     ------

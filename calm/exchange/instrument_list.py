@@ -86,9 +86,9 @@ def in_words(late: float) -> str:
 def read_instrument_list(path: Path, seabed: float) -> list[ListedInstrument]:
     """Read the instruments of a list, in the order of the list.
 
-    Instruments without a serial number are omitted, unless they have a nominal depth and a name or
-    clock error. `seabed` is the water depth [m], to convert heights. Raise InputError if the list
-    is unreadable or no instrument remains.
+    Only instruments with a serial number, or with a nominal depth and a name or clock error, are
+    kept. `seabed` is the water depth [m]. Raise InputError if the list is unreadable or has no such
+    instrument.
     """
     head = read_head(path, _HEAD)
     if cf_files.engine_of(path):

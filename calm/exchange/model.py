@@ -31,7 +31,7 @@ class ImportOptions:
     columns : headings in a table, by column name in CALM
     elements : library of elements for values that a table lacks
     allow_include : whether files outside the folder may be included
-    sheet : name of the sheet with the list; None if only one sheet has a list
+    sheet : name of the sheet with the list, if several sheets have lists
     """
 
     defines: Mapping[str, str] = field(default_factory=dict)
@@ -58,10 +58,9 @@ class ImportedComponent:
 
     Attributes
     ----------
-    name : name in the file
     kind : sphere, cylinder, body, cable, chain or anchor
     figures : values by field; per metre for cables and chains
-    guesses : reason for each value that is not from the file, by field
+    guesses : reason for each value not from the file
     comment : source of the values
     hull : rows of draft [m], displaced volume [m³] and immersed area [m²], for a float
     entry : id of the catalogue entry that replaces the component, or empty
@@ -189,9 +188,9 @@ class ImportedWater:
     depth : water depth [m]; None for a tow if unknown
     density : density [kg/m³], or rows of depth and density
     gravity : acceleration of gravity [m/s²]
-    current : rows of depth [m] and velocity to the east, to the north and up [m/s]
+    current : rows of depth [m] and velocity (east, north, up) [m/s]
     wind : speed [m/s], and direction towards which the wind blows [degrees]
-    guesses : reason for each value that is not from the file, by field
+    guesses : reason for each value not from the file
     """
 
     depth: float | None

@@ -109,8 +109,8 @@ def time_text(time: np.datetime64) -> str:
 def choose_time(times: NDArray[np.datetime64], wanted: str | None) -> tuple[int, str | None]:
     """Return the index of the time nearest to a requested time, and a notice if the times differ.
 
-    A request is needed if the file has several times. Raise TimeChoiceError if the file has no
-    times, or if the requested time is outside the record or occurs twice.
+    Raise TimeChoiceError if the file has no times, if the requested time is outside the record or
+    occurs twice, or if a request is missing.
     """
     if not len(times):
         raise TimeChoiceError("the file has no times")

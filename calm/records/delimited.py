@@ -262,14 +262,11 @@ def cells_in(text: str) -> list[list[str]]:
 
 
 def dialect_of(lines: Sequence[str], *, words: bool = False) -> Dialect:
-    """Find the separator and the decimal symbol of a table.
+    """Find the separator and the decimal symbol of a table, given lines without blank lines and
+    comments.
 
-    The decimal symbol is a comma if some comma cannot separate thousands and no number has a point.
-
-    Parameters
-    ----------
-    lines : lines that are neither empty nor comments
-    words : whether cells may contain blanks, so that blanks do not separate cells
+    If `words`, blanks do not separate cells. The decimal symbol is a comma if some comma cannot
+    separate thousands and no number has a point.
     """
     best, most = ",", 0
     for separator in _SEPARATORS:

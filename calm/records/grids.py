@@ -63,8 +63,8 @@ def choose_column(
 ) -> GridColumn:
     """Select the nearest grid column with a current, or the only column.
 
-    `velocity` names the two velocity variables, and `time` the dimension of the times. `wanted` is
-    latitude and longitude, needed if there are several columns.
+    `velocity` names two variables, and `time` the dimension of the times. `wanted` is latitude and
+    longitude, needed to choose from several columns.
 
     Raise UnreadableError if the position is missing or outside the grid, if no column nearby has a
     current, or if the grid is staggered.
@@ -169,8 +169,8 @@ def _indices_around(
 def _nearest(away: Floats) -> NDArray[Any]:
     """Return the indices of the grid points nearest to a position along an axis, in axis order.
 
-    `away` has the signed distances from the position [degrees]. There are at most ``2 REACH + 1``
-    points. On an axis around the globe, both ends may be included.
+    `away` has the signed distances from the position [degrees]. At most ``2 REACH + 1`` points are
+    returned, around the globe possibly from both ends.
     """
     near = np.argsort(np.abs(away), kind="stable")[: 2 * REACH + 1]
     return near[np.argsort(away[near], kind="stable")]

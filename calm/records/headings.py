@@ -63,7 +63,7 @@ def column_unit(
     column : heading, for messages
     unit : unit in the heading, or empty
     dimensions : allowed dimensions, keys of `calm.units.DIMENSIONS`
-    usual : unit to suggest; by default the SI unit
+    usual : unit to suggest
 
     Raises
     ------
@@ -135,12 +135,8 @@ _INFINITE = ("inf", "infinity")
 class NamedColumns:
     """Rows of a table in which the known columns have been identified by name.
 
-    Attributes
-    ----------
-    factors : factor to SI units (degrees for angles), by column name
-    places : cell index by column name
-    rows : rows with as many cells as the header
-    others : headings of the unknown columns
+    `factors` to SI units (degrees for angles) and `places` in a row are by column name. `rows` are
+    complete, and `others` are the headings of unknown columns.
     """
 
     factors: Mapping[str, float]

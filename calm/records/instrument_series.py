@@ -477,12 +477,11 @@ def _standard(dataset: xr.Dataset, sought: Sequence[str]) -> list[str]:
 
 @dataclass(frozen=True)
 class Readings:
-    """Values of several variables for k instruments at n times.
+    """Values of several variables for k instruments at n increasing times.
 
     Attributes
     ----------
-    time : (n,) increasing times
-    axis, along : dimensions of the times and the instruments; `along` is None for one instrument
+    axis, along : dimensions of the times and of the instruments; `along` is None for one instrument
     values : (n, k) values of each variable, in the units of the file
     dropped : (n, k) mask of readings rejected by a flag of any variable
     clock : name and unit of the time variable

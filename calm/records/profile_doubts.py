@@ -60,11 +60,8 @@ def direction_doubts(directions: Sequence[float], name: str) -> Iterator[str]:
 def profile_doubts(depth: Floats, u: Floats, v: Floats, water_depth: float) -> Iterator[str]:
     """Report doubtful levels of one profile, in sentences without a full stop.
 
-    Parameters
-    ----------
-    depth : (n,) increasing depths [m]
-    u, v : (n,) components without gaps [m/s]
-    water_depth : water depth [m]; inf if unknown
+    Depths (n,) [m] increase, and components u, v (n,) [m/s] have no gaps. An unknown water depth is
+    inf.
     """
     speed, toward = np.hypot(u, v), np.degrees(np.arctan2(u, v))
     yield from _reversed_levels(depth, speed, toward)

@@ -159,8 +159,8 @@ def check_depths(
 ) -> None:
     """Check that depths are between 0 and `DEEPEST`, and increase within each profile.
 
-    Mistakes are added to the `problems` of the table. Values are in SI units by column name.
-    `profile` is the profile index of each row, or None for a single profile.
+    Mistakes are added to the `problems` of the table. `values` are in SI units. `profile` is the
+    profile index of each row, or None for a single profile.
     """
     if "depth" not in values:
         return

@@ -210,7 +210,7 @@ def _impossible(height: float, period: float) -> str | None:
 def doubted(sea: SeaState) -> str | None:
     """Return a remark if a sea is steeper than measured seas, else None.
 
-    The ratio of Hs to the wavelength at Tp is limited to 1/15 up to 8 s, falling to 1/25 at 15 s
+    The maximum ratio of Hs to the wavelength at Tp is 1/15 up to 8 s, and 1/25 at 15 s
     (DNV-RP-C205, steepness criteria).
     """
     height, period = sea.significant_height, sea.peak_period

@@ -56,8 +56,8 @@ class CurrentValues:
     u, v : (n, k) eastward and northward components [m/s]; NaN in gaps
     times : (n,) increasing times; None for a single profile
     water_depth : water depth [m]; inf if unknown
-    unit, factor : declared unit of speed, and its factor to m/s
-    good : (n, k) share of good pings; None if unknown
+    unit, factor : declared unit of speed, and the factor to m/s
+    good : (n, k) share of good pings, if known
     """
 
     depth: Floats
@@ -161,10 +161,7 @@ def left_out(top: float, bottom: float, water_depth: float, what: str = "current
 def speed_doubts(speed: Floats, unit: str = "m/s", factor: float = 1.0) -> Iterator[str]:
     """Report speeds that are all so small that the declared unit is probably wrong.
 
-    Parameters
-    ----------
-    speed : (n,) speeds [m/s]
-    unit, factor : declared unit, and the factor from this unit to m/s
+    Speeds (n,) are in m/s. `factor` is the factor from the declared unit to m/s.
     """
     strongest = float(speed.max(initial=0.0))
     if speed.size < _VARIED or not 0.0 < strongest < WEAK:

@@ -139,13 +139,14 @@ def anchor_of(element: MddElement) -> model.ImportedComponent:
 
 @dataclass(frozen=True)
 class MddElement:
-    """An element of the line: a column of the matrix ``H``, with its values from other matrices.
+    """An element of the line: a column of the matrix ``H``, with values from other matrices.
+
+    Values of a line (`is_line`: wire, rope or chain) are per metre. Fasteners are shackles, links
+    and swivels.
 
     Attributes
     ----------
     length, width, diameter : sizes [m]; only a sphere has a diameter
-    is_line : whether the element is a wire, rope or chain, with values per metre
-    is_fastener : whether the element is a shackle, link or swivel
     lift : net buoyancy [kg or kg/m]
     mass : mass in air [kg]; None if unknown
     modulus : modulus of elasticity of a line [Pa]; None if unknown, inf if inextensible

@@ -155,8 +155,8 @@ def _position_by_share(
 ) -> tuple[int, float] | None:
     """Return the index of a clamp's piece, and the distance from the piece's upper end [m].
 
-    `host` is the number of the element in the file. `share` is the fraction of the element below
-    the clamp. Return None if `host` or `share` is out of range.
+    `host` numbers the element, and `share` is the fraction of the element below the clamp. Return
+    None if `host` or `share` is out of range.
     """
     count, number = len(design.items), round(host) - 1
     if design.tow is not None:

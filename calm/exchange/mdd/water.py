@@ -16,10 +16,8 @@ def read_water(
     """Read the environment of a file, and the current record if the file has several profiles.
 
     The variable `z` holds heights above the seabed up to the surface, or depths if `towed`. The
-    environment has the current of the first profile. Guesses about times and density are added to
-    `guessed`.
-
-    Raise ValueError if `z` is negative or incomplete, or if variables have gaps or different sizes.
+    environment has the first current profile. Raise ValueError if `z` is negative or incomplete, or
+    if variables have gaps or different sizes.
     """
     levels = variables.reals("z").ravel()
     if not np.any(levels > 0.0):

@@ -38,11 +38,8 @@ _FITTING = 1.0  # m: a shorter connector is a fitting, not a rope
 class ListRow:
     """A row of a list: name, values in SI units, count, and guesses.
 
-    Attributes
-    ----------
-    metre : names of the values that are per metre
-    line : whether the row is a cable or chain; if None, role, kind and name decide
-    hint : advice on missing values
+    `metre` has the names of the values that are per metre. `line` is whether the row is a cable or
+    chain; if None, role, kind and name decide.
     """
 
     place: int
