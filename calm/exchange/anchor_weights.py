@@ -17,12 +17,11 @@ _LEAST = 100.0  # smallest guessed weight in N
 
 
 def secure_anchors(design: model.ImportedDesign, output: Path) -> None:
-    """Set the weight of each anchor without a weight, and of each anchor that the line lifts.
+    """Set the weight of each anchor that has no weight or that the line lifts.
 
-    The new weight is the weight that `calm check` requires in the current of the imported file. The
-    shape of the line does not depend on the anchor weight. If the line has no equilibrium, weights
-    in the file are unchanged, and a missing weight is set to a value that holds any line. `output`
-    is the path of the mooring file that will be written.
+    The new weight is the weight that `calm check` requires in the current of the imported file.
+    Without an equilibrium, only missing weights are set, to a value that holds any line. `output`
+    is the path of the future mooring file.
     """
     last = design.items if design.legs else design.items[-1:]
     anchors = [item.component for item in last if item.component.kind == "anchor"]
@@ -56,6 +55,7 @@ def _anchor_loads(
 
     The load is None if there is no equilibrium.
     """
+    # the shape of the line does not depend on the anchor weight
     before = [anchor.figures for anchor in anchors]
     for anchor in anchors:
         anchor.figures = {k: one for k, one in anchor.figures.items() if k != "mass"}

@@ -30,14 +30,12 @@ class CatalogueMatch:
 
 
 def match_catalogue_entries(design: model.ImportedDesign) -> tuple[CatalogueMatch, ...]:
-    """Replace imported components by catalogue entries with matching names and values.
+    """Replace imported components by catalogue entries with similar names and values.
 
-    An entry matches if it has the same kind as the component, a similar name, and similar values.
-    The id and name of the entry must contain at least half the words in the name of the component.
-    If both names contain a grade, the grades must agree. Diameter, length, net buoyancy, normal
-    drag, stiffness and loads must agree within `_TOLERANCE`; unknown values are not compared. If
-    several entries match, an entry whose id or name equals the name of the component is preferred,
-    then the entry with the largest share of words in common with this name.
+    Similar names share at least two words, and half the words in the component's name. Kind, grade,
+    sizes, net buoyancy, drag, stiffness and loads must agree if known, within `_TOLERANCE`. For a
+    component without a size, only grade and net buoyancy are compared. Of several entries, the
+    entry with the most similar name is used.
     """
     catalogue = Catalogue.load()
     entries = {id: entry for id, entry in catalogue.all().items() if isinstance(entry, Component)}

@@ -20,8 +20,8 @@ def _id_from_name(name: str) -> str:
 def ids_of(components: Iterable[ImportedComponent], taken: Iterable[str] = ()) -> dict[int, str]:
     """Choose an id in the mooring file for each component.
 
-    Return the chosen ids in a dictionary whose keys are the Python `id()` of the component objects.
-    Components with equal values share an id. Ids in `taken` are not used.
+    Return the ids by Python `id()` of the components. Components with equal values share an id. Ids
+    in `taken` are not used.
     """
     components = list(components)
     ids: dict[int, str] = {}

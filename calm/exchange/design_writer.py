@@ -206,12 +206,8 @@ def _write_component(
 def figure_text(key: str, value: model.FigureOrWord, *, per_metre: bool, in_kilograms: bool) -> str:
     """Format a value of a component for the mooring file.
 
-    Parameters
-    ----------
-    key : name of the field in the component
-    value : value in SI units, or a word
-    per_metre : whether forces and masses are per metre
-    in_kilograms : whether forces are shown in kilograms-force
+    `value` is in SI units, or a word. `per_metre` applies to forces and masses, `in_kilograms`
+    (kilograms-force) to forces.
     """
     if isinstance(value, str):
         return quoted(value)

@@ -36,19 +36,18 @@ Levels = tuple[tuple[float, float, float, float, float], ...]
 class ExportedPart:
     """A piece, or an item clamped on a piece.
 
+    Values of a flexible part (a cable or chain) are per metre.
+
     Attributes
     ----------
-    use, label, role : as in the mooring file
-    component : definition of the component
-    flexible : whether the part is a cable or chain, whose values are per metre
     length : unstretched length [m]
     buoyancy : net buoyancy in reference water, positive up [N or N/m]
-    net, density : net buoyancy [N or N/m] of the part and density of the water [kg/m³], at the
-        depth that the part has in the upright line
-    kn, kt : normal and tangential drag at 1 m/s and 1025 kg/m³ [N/(m/s)², per metre if flexible]
-    directional : whether the drag depends on the direction of the flow relative to the axis
+    net, density : net buoyancy [N or N/m] and water density [kg/m³] at the depth of the part in the
+        upright line
+    kn, kt : normal and tangential drag at 1 m/s and 1025 kg/m³ [N/(m/s)² or N/(m/s)²/m]
+    directional : whether the drag depends on the flow direction relative to the axis
     stiffness : EA [N]; 0 if inextensible
-    clamps : clamps on the part, with their distances from the upper end of the part [m]
+    clamps : clamps, with their distances from the upper end [m]
     """
 
     use: str
@@ -93,14 +92,11 @@ class ExportedPart:
         return max(REFERENCE_DENSITY * volume - weighed, _LEAST_MASS * abs(weighed))
 
     def area(self, density: float | None = None, *, along: bool = False) -> float:
-        """Return drag coefficient times area [m²], per metre for a cable.
+        """Return drag coefficient times area [m²], per metre for a cable; tangential if `along`,
+        else normal.
 
-        Parameters
-        ----------
-        density : uniform density of the water in the other program [kg/m³]. The area is scaled so
-            that the drag in that water equals the drag at the depth of the part. By default, the
-            area refers to reference water
-        along : whether to return the tangential instead of the normal drag area
+        `density` is the uniform density of the water in the other program [kg/m³]. The drag in that
+        water equals the drag at the depth of the part. By default, the area is for reference water.
         """
         own = (self.kt if along else self.kn) / (0.5 * REFERENCE_DENSITY)
         return own if density is None else own * self.density / density
@@ -108,12 +104,11 @@ class ExportedPart:
 
 @dataclass
 class PartLoad:
-    """Sums of net force, mass and drag areas over the parts at one point or on one rigid segment.
+    """Sums over the parts at one point or on one rigid segment.
 
     Attributes
     ----------
-    density : uniform density of the water in the other program [kg/m³]
-    names : names of the parts
+    density : uniform density of the water [kg/m³]
     net, mass : net force [N] and mass [kg]
     area, along : normal and tangential drag areas [m²]
     """
@@ -151,15 +146,10 @@ class PartLoad:
 
 
 def unique_name(known: dict[str, str], name: str, figures: str) -> str:
-    """Register values under a name, and return this name.
+    """Register values under a unique name, and return this name.
 
-    If the preferred name is already registered with other values, a number is appended to the name.
-
-    Parameters
-    ----------
-    known : registered values by name; the new values are added to this dictionary
-    name : preferred name
-    figures : values in the format of the file
+    `known` holds registered values by name. A number is appended to `name` if `name` is registered
+    with other values.
     """
     chosen, number = name, 1
     while known.setdefault(chosen, figures) != figures:
@@ -169,12 +159,9 @@ def unique_name(known: dict[str, str], name: str, figures: str) -> str:
 
 
 def place_along(path: Floats, share: float) -> Coordinates:
-    """Interpolate the position at a given fraction of the length of a part.
+    """Interpolate the position at a fraction of the length of a part.
 
-    Parameters
-    ----------
-    path : (n, 3) positions of the nodes of the part
-    share : fraction of the length from the first node, 0 to 1
+    `path` has the node positions (n, 3). `share`, from 0 to 1, is the fraction from the first node.
     """
     steps = np.linalg.norm(np.diff(path, axis=0), axis=1)
     along = np.concatenate([[0.0], np.cumsum(steps)])
@@ -197,23 +184,20 @@ class ExportedLine:
 
     Attributes
     ----------
-    name : name of the file
-    parts : parts of a mooring from the top down, without the anchor; or parts of a tow from the
-        ship down
-    anchor : the anchor, and the weight in water of the anchor with its clamps [N]; None for a tow
+    parts : parts without the anchor, from the top (of a tow: from the ship) down
+    anchor : the anchor, and the weight in water of anchor and clamps [N]; None for a tow
     depth : water depth [m]
-    levels : current and density at each level, from the surface down
+    levels : current and density, from the surface down
     gravity : acceleration of gravity [m/s²]
     wind : wind velocity to the east and to the north [m/s]
-    tow : the ship of a tow; None for a mooring
+    tow : None for a mooring
     afloat : whether the line reaches the surface
     has_draft : whether the hull of the float is known
-    riding : share of the net buoyancy of the float that is used, and drag of the float as a share
-        of its drag when immersed; both are 1 for a submerged float
+    riding : net buoyancy in use and drag of the float, as fractions of the values when immersed
     windage : wind area of the float [m²], and drag coefficient of this area
     omitted : features that no other program can represent
     solve : function that finds the equilibrium
-    ends : connections of the upper and the lower end, for a leg of a net; None for a single line
+    ends : upper and lower connection of a leg; None for a single line
     """
 
     name: str
@@ -266,11 +250,10 @@ class ExportedLine:
         return paths
 
     def float_as_point(self, density: float) -> tuple[float, float]:
-        """Return net force [N] and drag area [m²] of a point that represents a submerged float.
+        """Return net force [N] and drag area [m²] of a point in place of a submerged float.
 
-        Some programs treat a float as a point at the end of the line, in water of uniform `density`
-        [kg/m³]. With the returned values, such a point exerts the same load on the line as the
-        float in CALM. If there is no equilibrium, the values of the float itself are returned.
+        In water of uniform `density` [kg/m³], a point at the end of the line exerts the same load
+        as the float. Without an equilibrium, the values of the float itself are returned.
         """
         part = self.parts[0]
         own = part.net, part.area(density)

@@ -31,21 +31,17 @@ def export_file(
 ) -> Exported:
     """Convert a mooring or a tow to the file of another program.
 
-    Parameters
-    ----------
-    to : name of a registered format that can be written
-    environment : name of an environment in the file, or path of an environment file
-    catalogs : component catalogues, as in `calm.load`
+    `to` is a registered format, and `environment` a name in the file or the path of an environment
+    file.
 
     Raises
     ------
     InputError
         The file has mistakes.
     NoEquilibrium
-        No length can be found for a piece with fitted length, or the format needs an equilibrium
-        and the mooring has none.
+        The format, or a fitted length, needs an equilibrium that does not exist.
     UsageError
-        `to` is not a registered format, or the format cannot represent this kind of design.
+        The format is unknown, or cannot represent the design.
     """
     chosen = written_format(to)
     assert chosen.write is not None

@@ -1,8 +1,7 @@
 """Run readers of foreign binary files in a separate process.
 
-The libraries that read MATLAB files and workbooks are written in C and Rust. On a damaged file they
-may crash or request all memory. Such a failure ends only the child process, and is reported as an
-error.
+The readers use C and Rust libraries, which may crash or request all memory on a damaged file. Only
+the child process then ends.
 """
 
 import os
@@ -26,14 +25,10 @@ MOST_SECONDS = 120.0
 def read_apart(
     reader: Callable[_Given, _Found], *given: _Given.args, **named: _Given.kwargs
 ) -> _Found:
-    """Call a reader in a child process, and return its result.
+    """Call a reader in a child process, and return the result.
 
-    The reader must be defined at the top level of a module, where the child process can find it.
-
-    Raises
-    ------
-    ValueError
-        The reader failed, crashed, or took too much time or memory.
+    The reader must be defined at the top level of a module. Raise ValueError if the reader fails,
+    crashes, or takes too much time or memory.
     """
     from multiprocessing import Pipe, Process
 

@@ -1,7 +1,7 @@
-"""Import files of other programs: find the format, read the file, and write a mooring file.
+"""Import files of other programs as mooring files.
 
 Components may be replaced by catalogue entries, and the environment by an environment file. A
-missing or insufficient anchor weight is replaced. The mooring file is read back as a check.
+missing or insufficient anchor weight is replaced.
 """
 
 from __future__ import annotations
@@ -35,13 +35,12 @@ class Imported:
 
     Attributes
     ----------
-    file : the file that was read
-    format : name of the format of this file
+    file, format : path and format name of the converted file
     text : text of the mooring file
-    guessed, dropped : remarks about guessed values, and about omitted features
-    matched : components that were replaced by catalogue entries
-    record : currents at several times; None if the file has none
-    understood : how the file was interpreted; empty if its format leaves no choice
+    guessed, dropped : guessed values, and omitted features
+    matched : components replaced by catalogue entries
+    record : currents at several times, if any
+    understood : interpretation of an ambiguous format, as text
     """
 
     file: Path
@@ -63,23 +62,21 @@ def import_file(
     options: model.ImportOptions | None = None,
     match_catalogue: bool = False,
 ) -> Imported:
-    """Convert a file of another program to a mooring file.
+    """Convert a file of another program to the text of a mooring file.
 
     Parameters
     ----------
-    output : path of the mooring file that will be written; this function does not write it
-    format : name of the format, as in `registry.register_format`; by default, the format is
-        recognised from the content
-    environment : path of an environment file that replaces the environment in the imported file
-    match_catalogue : whether components are replaced by catalogue entries that agree with them
+    output : path of the future mooring file
+    format : name of a registered format; by default recognised from the content
+    environment : environment file that replaces the environment in the imported file
+    match_catalogue : whether components are replaced by similar catalogue entries
 
     Raises
     ------
     InputError
-        The file is damaged, or has a feature that CALM cannot represent. The message names the
-        feature.
+        The file is damaged, has no environment, or has an unsupported feature.
     UsageError
-        There is no such format.
+        The format is unknown.
     """
     options = options or model.ImportOptions()
     chosen = _format_of(path, format, listed=options.elements is not None)
@@ -158,12 +155,8 @@ def _check_readable(path: Path, output: Path, text: str) -> None:
 def environment_lines(path: Path, output: Path) -> list[str]:
     """Return the lines of the `environment` key in a file, for the mooring file `output`.
 
-    The path of a current file is converted to a path relative to the folder of `output`.
-
-    Raises
-    ------
-    InputError
-        The file cannot be read, or has no `environment`.
+    The path of a current file becomes relative to the folder of `output`. Raise InputError if the
+    file is unreadable or has no `environment`.
     """
     found = read_document(path).data.get("environment")
     if not isinstance(found, dict) or not found:

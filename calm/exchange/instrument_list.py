@@ -1,8 +1,7 @@
-"""Instrument lists of moorings, as used by observing groups, with nominal depths or heights.
+"""Instrument lists of moorings, with nominal depths or heights.
 
-Supported are CSV tables and workbooks, `info.dat` of RODB (RAPID, OSNAP), configurations of
-oceanarray, and NetCDF files whose instruments have serial numbers and nominal depths, such as the
-products of IMOS.
+Lists are CSV tables, workbooks, `info.dat` of RODB (RAPID, OSNAP), configurations of oceanarray, or
+NetCDF files with serial numbers and nominal depths.
 """
 
 from __future__ import annotations
@@ -63,11 +62,11 @@ class ListedInstrument:
     Attributes
     ----------
     where : position in the list, for messages
-    name, serial : name and serial number; empty if missing in the list
+    name, serial : empty if missing
     nominal : nominal depth [m]; NaN if unknown
-    clock : lag of the clock [s], negative for an early clock; None if unknown
-    checked : time at which this lag was measured; None if unknown
-    remark : any other error of the clock, in words
+    clock : lag of the clock [s], negative if early; None if unknown
+    checked : time at which the lag was measured; None if unknown
+    remark : any other clock error, in words
     """
 
     where: str
@@ -87,15 +86,9 @@ def in_words(late: float) -> str:
 def read_instrument_list(path: Path, seabed: float) -> list[ListedInstrument]:
     """Read the instruments of a list, in the order of the list.
 
-    Parameters
-    ----------
-    seabed : water depth, to convert heights above the seabed [m]
-
-    Raises
-    ------
-    InputError
-        The list cannot be read, has an unknown format, or has no usable instrument. An instrument
-        needs a serial number, or a nominal depth together with a name or a clock error.
+    Only instruments with a serial number, or with a nominal depth and a name or clock error, are
+    kept. `seabed` is the water depth [m]. Raise InputError if the list is unreadable or has no such
+    instrument.
     """
     head = read_head(path, _HEAD)
     if cf_files.engine_of(path):

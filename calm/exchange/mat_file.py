@@ -1,7 +1,7 @@
 """Read variables from a `.mat` file written by any version of MATLAB or Octave.
 
-No content of such a file is executed or unpickled. MATLAB 4 and 5 are read by scipy, HDF5 (MATLAB
-7.3 and Octave) by h5py, and the text format of Octave, compressed or not, by this module.
+Binary, HDF5 and Octave text files are supported, also compressed. No content is executed or
+unpickled.
 """
 
 from __future__ import annotations

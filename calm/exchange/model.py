@@ -27,13 +27,11 @@ class ImportOptions:
 
     Attributes
     ----------
-    defines : for WHOI Cable, macros by name; for oceanarray, catalogue ids by the component names
-        in its files
-    columns : headings in the table, by the name of the column in CALM
-    elements : library of elements with the values that a table lacks
-    allow_include : whether a file may include files from outside its folder
-    sheet : name of the sheet that contains the list, in a workbook; None if only one sheet has a
-        list
+    defines : macros by name (WHOI Cable), or catalogue ids by component name (oceanarray)
+    columns : headings in a table, by column name in CALM
+    elements : library of elements for values that a table lacks
+    allow_include : whether files outside the folder may be included
+    sheet : name of the sheet with the list, if several sheets have lists
     """
 
     defines: Mapping[str, str] = field(default_factory=dict)
@@ -60,14 +58,12 @@ class ImportedComponent:
 
     Attributes
     ----------
-    name : name in the file
-    kind : kind of the component: sphere, cylinder, body, cable, chain or anchor
-    figures : values by the name of the field; the values of cables and chains are per metre
-    guesses : for each field whose value is not from the file, the reason for the value
-    comment : comment about the source of the values
-    hull : displacement table of a float, with rows of draft [m], displaced volume [m³] and immersed
-        area [m²]; empty for other components
-    entry : id of the catalogue entry that replaces the component; empty if there is none
+    kind : sphere, cylinder, body, cable, chain or anchor
+    figures : values by field; per metre for cables and chains
+    guesses : reason for each value not from the file
+    comment : source of the values
+    hull : rows of draft [m], displaced volume [m³] and immersed area [m²], for a float
+    entry : id of the catalogue entry that replaces the component, or empty
     """
 
     name: str
@@ -82,13 +78,10 @@ class ImportedComponent:
     def of_line(
         cls, name: str, weight: float, figures: dict[str, FigureOrWord]
     ) -> ImportedComponent:
-        """Create a chain if the line sinks and is called a chain; otherwise create a cable.
+        """Create a chain if the line sinks and is called a chain, else a cable.
 
-        Parameters
-        ----------
-        name : name in the file
-        weight : weight in water per metre, negative for a line that floats [N/m]
-        figures : diameter, drag and other values by field, to which the weight or buoyancy is added
+        `weight` in water is per metre [N/m], negative for a floating line. `figures` holds the
+        other values by field.
         """
         figures["buoyancy" if weight < 0.0 else "weight"] = abs(weight)
         kind = "chain" if weight >= 0.0 and is_called(name, "chain") else "cable"
@@ -138,14 +131,10 @@ class ImportedPiece:
         self, component: ImportedComponent, at: float, guess: str = "", label: str = "",
         serial: str = "",
     ) -> None:  # fmt: skip
-        """Clamp a component on this piece; the clamps of a piece remain in order from the top.
+        """Clamp a component on the piece; clamps stay in order from the top.
 
-        Parameters
-        ----------
-        component : the component
-        at : distance from the upper end of the piece [m]
-        guess : reason for a guessed position; empty if the position is from the file
-        label, serial : label and serial number of the clamp
+        `at` is the distance from the upper end of the piece [m]. `guess` is the reason for a
+        guessed position, or empty.
         """
         self.clamps.append(ImportedClamp(component, at, guess, label, serial))
         self.clamps.sort(key=lambda clamp: clamp.at)
@@ -153,11 +142,10 @@ class ImportedPiece:
 
 @dataclass(eq=False)
 class ImportedLeg:
-    """A leg of a net.
+    """A leg of a net, with the pieces from the upper end down.
 
-    `items` are the pieces of the leg, from the upper end. `top` and `bottom` are the connections of
-    the two ends as written in a mooring file, such as ``{join: A}``. A connection that the file
-    does not need is empty.
+    `top` and `bottom` are the connections of the ends as in a mooring file, such as ``{join: A}``.
+    An unneeded connection is empty.
     """
 
     name: str
@@ -180,10 +168,7 @@ def held_at(depth: float, east: float, north: float) -> str:
 def anchored_at(east: float, north: float, depth: float | None = None) -> str:
     """Return the mooring-file text for the lower end of a leg with an anchor.
 
-    Parameters
-    ----------
-    east, north : position of the anchor [m]
-    depth : depth at the anchor [m], if it differs from the water depth
+    Position and depth are in metres; `depth` is needed only if it differs from the water depth.
     """
     deeper = "" if depth is None else f", depth: {depth:.9g} m"
     return f"{{anchor: {{at: [{east:.9g} m, {north:.9g} m]{deeper}}}}}"
@@ -200,12 +185,12 @@ class ImportedWater:
 
     Attributes
     ----------
-    depth : depth of the water [m]; None for a tow whose file gives no depth
-    density : density [kg/m³], or rows of depth and density; None if the file gives no density
-    gravity : gravitational acceleration [m/s²]
-    current : rows of depth [m] and velocity to the east, to the north and up [m/s]
-    wind : wind speed [m/s], and the direction towards which the wind blows [degrees]
-    guesses : for each field whose value is not from the file, the reason for the value
+    depth : water depth [m]; None for a tow if unknown
+    density : density [kg/m³], or rows of depth and density
+    gravity : acceleration of gravity [m/s²]
+    current : rows of depth [m] and velocity (east, north, up) [m/s]
+    wind : speed [m/s], and direction towards which the wind blows [degrees]
+    guesses : reason for each value not from the file
     """
 
     depth: float | None
@@ -231,21 +216,17 @@ class ImportedDesign:
 
     Attributes
     ----------
-    program : the program that wrote the file
-    items : pieces of a mooring from the top down, of a tow from the ship down, or of a net leg by
-        leg
-    legs : the legs of a net
-    water : the environment; None if the file has none
+    items : pieces from the top (of a tow: from the ship) down; in a net, leg by leg
+    water : None if the file has no environment
     environment : lines of the `environment` key that replaces `water`
     solver : keys of `solver`, each with its value and a comment
-    guessed : remarks about guesses, except for guessed values of a component
-    dropped : remarks about contents of the file that CALM cannot use
+    guessed : remarks on guesses, except for values of a component
+    dropped : remarks on contents that CALM cannot use
     notes : further comments at the head of the mooring file
     heading : further keys of the mooring file, as text
     in_kilograms : whether the file gives forces in kilograms-force
-    sunken : component that replaces the uppermost component if the float is submerged in still
-        water; None if the file states whether the float is submerged
-    understood : how the file was interpreted, as a text; empty if the format leaves no choice
+    sunken : replacement of the uppermost component, if the float is submerged in still water
+    understood : interpretation of an ambiguous format, as text
     """
 
     program: str

@@ -1,9 +1,8 @@
 """Read a mooring configuration of oceanarray, a file `NAME.mooring.yaml`.
 
-In such a file, `inline` lists the pieces of the line and `clamp` the instruments clamped on it,
-both with heights above the seabed. The file lacks most other values, which are read from an element
-library or the catalogue. If no rope is listed between two pieces, CALM inserts a rope of the length
-that the heights of the pieces require.
+The keys `inline` and `clamp` list pieces and clamped instruments, with heights above the seabed. An
+element library or the catalogue supplies missing values. If no rope is listed between two pieces,
+CALM inserts a rope of the required length.
 """
 
 import re
@@ -52,8 +51,8 @@ def read_oceanarray(path: Path, options: model.ImportOptions) -> model.ImportedD
     Raises
     ------
     InputError
-        The file describes no line, a height or length is missing or wrong, or a component is
-        neither in the library nor in the catalogue.
+        The file describes no line, a height or length is missing or wrong, or a component is in
+        neither library nor catalogue.
     """
     document, problems = read_document(path), list[Problem]()
     library = {} if options.elements is None else read_library(options.elements)
@@ -91,15 +90,8 @@ def read_oceanarray(path: Path, options: model.ImportOptions) -> model.ImportedD
 def listed_instruments(path: Path) -> list[tuple[int, str, str, float, Mapping[str, Any]]]:
     """List the instruments of a file that have a serial number and a height.
 
-    Returns
-    -------
-    For each instrument: the line number in the file, the label, the serial number, the height above
-    the seabed [m], and the keys of the instrument together with the `recovery_time` of the file.
-
-    Raises
-    ------
-    InputError
-        The file is damaged.
+    Each tuple has line number, label, serial number, height above the seabed [m] and keys. The keys
+    include the `recovery_time` of the file. Raise InputError if the file is damaged.
     """
     document, problems = read_document(path), list[Problem]()
     reading = _Reading(document, problems)
@@ -131,8 +123,8 @@ _Found = tuple[model.ImportedComponent, str]
 class _Entry:
     """An item in the file; heights are above the seabed [m].
 
-    `names` are the names by which to find the component, the most specific first. `instrument` is
-    oceanarray's word for the kind of instrument. `item` has all keys of the item.
+    `names` are names for finding the component, the most specific first. `instrument` is
+    oceanarray's word for the kind of instrument.
     """
 
     place: _Location

@@ -45,8 +45,8 @@ _LONGEST_PIECE = 20.0  # m: maximum length of a rigid piece
 def is_called(name: str, *what: str) -> bool:
     """True if a name denotes a part of one of the given kinds.
 
-    The kinds are release, chain, connector (shackles, swivels, links), anchor, line (wires, ropes,
-    chains) and rigid (floats, instruments and fittings, including names of product families).
+    The kinds are release, chain, connector (swivels, links), anchor, line (wires, ropes, chains)
+    and rigid (floats, instruments, fittings).
     """
     return any(re.search(_NAMES[each], name, re.I) for each in what)
 
@@ -67,12 +67,8 @@ def is_long(name: str, length: float, across: float) -> bool:
 def role_of(name: str, buoyancy: float, *, fastener: bool = False) -> str:
     """Find the role of a rigid piece from its name and its net buoyancy.
 
-    Parameters
-    ----------
-    name : name of the piece in the other program
-    buoyancy : net force in water, positive up [N]
-    fastener : whether the other program marks the piece as a fastener; some programs also mark
-        instruments and floats as fasteners
+    `buoyancy` is the net force in water, positive up [N]. `fastener` is whether the other program
+    marks the piece as a fastener.
     """
     if is_called(name, "release"):
         return "release"

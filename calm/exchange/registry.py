@@ -1,7 +1,7 @@
 """Registry of file formats: recognition, readers and writers.
 
-A format is a module that calls `register_format`. The module is imported when the format is first
-used. Other packages add formats by the entry point ``calm.formats``, which names their modules.
+A format is a module that calls `register_format` when the module is imported, at the first use.
+Other packages list such modules in the entry point ``calm.formats``.
 """
 
 from __future__ import annotations
@@ -40,11 +40,8 @@ the last format with a reader, because `table` accepts any text in columns.
 class Exported:
     """Result of an export: a file for another program.
 
-    Attributes
-    ----------
-    content : content of the file
-    lost : features of the design that the format cannot represent
-    beside : contents of further files to be written in the same folder, by file name
+    `lost` lists the features that the format cannot represent. `beside` has the contents of further
+    files for the same folder, by file name.
     """
 
     content: bytes
@@ -96,15 +93,14 @@ def register_format(
 
     Parameters
     ----------
-    name : name of the format for `--format` and `--to`, and name of its entry point
-    detect : function that recognises a file by its first bytes; if None, the user must name the
-        format with `--format`
-    read : function that reads a file as a design; None if the format cannot be imported
-    write : function that converts a design to a file; None if the format cannot be exported
-    program : name of the program to which the format belongs, for messages; by default, `name`
-    takes_elements : whether `read` uses `ImportOptions.elements`, a library of elements
+    name : name for `--format` and `--to`, and name of the entry point
+    detect : function that recognises a file; None if the user must give `--format`
+    read : function for import; None if the format cannot be imported
+    write : function for export; None if the format cannot be exported
+    program : name of the program, for messages; by default, `name`
+    takes_elements : whether `read` uses the library `ImportOptions.elements`
     writes_nets : whether `write` accepts designs with several legs
-    suffixes : file name suffixes that the program accepts, such as ".mat"; by default, any suffix
+    suffixes : file name suffixes that the program accepts, such as ".mat"; by default any
     """
     if name in _registered:
         raise ValueError(f"the format `{name}` already exists")
@@ -114,14 +110,14 @@ def register_format(
 
 
 def file_format(name: str) -> FileFormat:
-    """Return the format with a given name; its module is imported if needed.
+    """Return the format with a given name, and import the module of the format if needed.
 
     Raises
     ------
     KeyError
         There is no such format.
     CalmError
-        The module of the format cannot be imported, or does not register a format of that name.
+        The module cannot be imported, or does not register the format.
     """
     if name not in _registered:
         module = _OWN[name] if name in _OWN else _added_modules()[name]

@@ -11,9 +11,7 @@ from calm.exchange.design_writer import mooring_text
 def sink_what_stays_under_water(design: model.ImportedDesign, output: Path) -> None:
     """Replace the uppermost float with `design.sunken` if the float is submerged in still water.
 
-    A float that is submerged only in a current is a surface float that is too small, and is kept. A
-    line without an equilibrium is not changed. `output` is the path of the mooring file that will
-    be written.
+    A line without an equilibrium is not changed. `output` is the path of the future mooring file.
     """
     if design.sunken is None:
         return
@@ -21,5 +19,6 @@ def sink_what_stays_under_water(design: model.ImportedDesign, output: Path) -> N
         rest = load(output, text=mooring_text(design, "")[0]).leg.at_rest
     except CalmError:
         return
+    # a float submerged only in a current is a surface float that is too small, and is kept
     if rest is not None and not rest.surface:
         design.items[0].component = design.sunken

@@ -1,7 +1,6 @@
 """Attributes with a defined meaning: CF standard names, cell methods, coordinate frames and north.
 
-This module reads long names and comments only to find the reference north and the sense of a
-direction. Other free text, such as a title, is quoted on the card of `calm.records.card`.
+Of the free text, only long names and comments about directions are interpreted.
 """
 
 from __future__ import annotations
@@ -60,13 +59,8 @@ def words_of(variable: xr.DataArray, *attributes: str) -> str:
 def not_a_value(variable: xr.DataArray, layers: Collection[str] = ()) -> str | None:
     """Return the reason why values of a variable do not belong to one time and depth, or None.
 
-    The reason is either the cell methods of the variable (a spread, a climatology, a mean over
-    depth) or a scale factor of zero.
-
-    Parameters
-    ----------
-    layers : dimensions and coordinates of levels that have bounds; means over the layers between
-        these bounds are accepted
+    Reasons are cell methods (a spread, a climatology, a mean over depth) and a scale factor of
+    zero. Means over the dimensions in `layers` are accepted.
     """
     methods = str(variable.attrs.get("cell_methods", ""))
     for dims, method, over in _METHOD.findall(methods):
@@ -81,8 +75,6 @@ def not_a_value(variable: xr.DataArray, layers: Collection[str] = ()) -> str | N
 
 def other_frame(attributes: Mapping[Any, Any]) -> str | None:
     """Return a message if velocities are not eastward and northward components, else None.
-
-    The message quotes the coordinate system that the attributes state.
 
     Parameters
     ----------
@@ -99,8 +91,8 @@ def other_frame(attributes: Mapping[Any, Any]) -> str | None:
 def moving_platform(dataset: xr.Dataset) -> str | None:
     """Return a message if a dataset comes from a moving ship, else None.
 
-    A ship is recognised by the attribute `source_program`, or by a median speed over the ground
-    that is too high for a mooring. This speed is taken from bottom track or platform velocities.
+    Evidence is the attribute `source_program`, or a median speed over the ground that is too high
+    for a mooring.
     """
     program = str(dataset.attrs.get("source_program", "")).strip()
     if program.lower() in _OF_SHIPS:
@@ -121,8 +113,8 @@ def moving_platform(dataset: xr.Dataset) -> str | None:
 def is_magnetic(variable: xr.DataArray, dataset: Mapping[Any, Any] = MappingProxyType({})) -> bool:
     """Return whether a velocity or direction is relative to magnetic north.
 
-    The evidence is the name, long name, standard name, unit or datum of the variable, or an
-    attribute of the variable or dataset such as `magnetic_declination_applied: no`.
+    Evidence is in the name and the texts of the variable, or in an attribute such as
+    `magnetic_declination_applied: no`.
     """
     own = f"{variable.name} {words_of(variable, *_NORTH_IN)}"
     return _is_magnetic_text(own) or "magnetic" in _stated_norths(variable, dataset)
@@ -152,8 +144,7 @@ def _is_magnetic_text(text: str) -> bool:
 def sense_of_direction(variable: xr.DataArray) -> str | None:
     """Return ``"to"`` if a current flows to a direction, and ``"from"`` if a current comes from it.
 
-    The answer is based on the long name, standard name and comment of the direction variable.
-    Return None if these texts do not give the sense of the direction, or contradict each other.
+    Return None if long name, standard name and comment are silent or contradictory.
     """
     own = words_of(variable, "long_name", "standard_name", "comment")
     toward, origin = _TOWARD.search(own), _FROM.search(own)

@@ -1,7 +1,6 @@
-"""Summary card of a file: its texts, variables, levels, times, flags and declination.
+"""Summary card of a file: texts, variables, levels, times, flags and declination.
 
-The user reads the card to confirm that the file is the intended one. The card quotes texts verbatim
-and gives values in their declared units.
+The card quotes texts verbatim, and gives values in their declared units.
 """
 
 from __future__ import annotations
@@ -58,14 +57,13 @@ class ReadCard:
 
     Attributes
     ----------
-    file : name of the file
     texts : title, summary and comment, quoted from the file
-    variables : summaries of the variables by role, such as east, north, depth
+    variables : summaries by role, such as east, north, depth
     levels : number of levels or of instruments
     times : (n,) increasing times; empty for a profile without a time
     clock : name and unit of the time variable
     flags : number of readings excluded by each flag variable
-    declination : angle by which currents were rotated from magnetic to true north [degrees]
+    declination : rotation of currents from magnetic to true north [degrees]
     """
 
     file: str

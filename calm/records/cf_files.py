@@ -1,7 +1,7 @@
-"""Access to CF datasets: opening, values, units, times and labels.
+"""Access to CF datasets (NetCDF 3 and 4, zarr): opening, values, units, times and labels.
 
-xarray opens NetCDF 3 and 4 and zarr; times are left undecoded and values are read lazily. Faults of
-a file raise `UnreadableError`, which `reading` converts to `InputError`.
+Times stay undecoded, and values are read lazily. A faulty file raises `UnreadableError`, which
+`reading` converts to `InputError`.
 """
 
 from __future__ import annotations
@@ -67,10 +67,10 @@ class UnreadableError(Exception):
 
 
 def holds_arrays(path: Path) -> bool:
-    """Return whether a path is NetCDF, zarr or the text file of an instrument, rather than CSV.
+    """Return whether a path is NetCDF, zarr or an instrument's text file, rather than CSV.
 
-    Raise InputError if the path is a folder but not a zarr store, or a file of a known but
-    unsupported kind.
+    Raise InputError for a folder that is not a zarr store, and for known but unsupported kinds of
+    file.
     """
     if path.is_dir():
         if not is_zarr(path):
@@ -110,7 +110,7 @@ def reading(path: Path) -> Iterator[None]:
 def opened(path: Path) -> Iterator[xr.Dataset]:
     """Open a dataset; any error becomes an InputError.
 
-    If the contents of the file cannot be used, the message lists the variables.
+    If the contents cannot be used, the message also lists the variables of the file.
     """
     if not path.exists():
         raise refused(path, no_such_file(path))
@@ -262,10 +262,9 @@ def first_present(dataset: xr.Dataset, names: Iterable[str]) -> list[str]:
 
 
 def known_values(variable: xr.DataArray) -> NDArray[np.float64]:
-    """Return the values of a variable in its declared unit, NaN outside its valid range.
+    """Return the values of a variable in the declared unit, NaN outside the valid range.
 
-    `valid_range`, `valid_min` and `valid_max` follow the NetCDF User Guide: limits that have the
-    type of the packed values refer to packed values.
+    As in the NetCDF User Guide, limits with the type of the packed values refer to packed values.
     """
     _refuse_many(variable.name, variable.size)
     values = np.array(variable.values, np.float64)
@@ -313,13 +312,10 @@ def labels_along(dataset: xr.Dataset, dimension: str) -> tuple[str, ...] | None:
 
 
 def places_along(dataset: xr.Dataset, dimension: str | None, seabed: float) -> Floats | None:
-    """Return the nominal depths of instruments [m]; None if the dataset has no nominal depths.
+    """Return the nominal depths of instruments [m]; None if the dataset has none.
 
-    Parameters
-    ----------
-    dataset : dataset of the instruments
-    dimension : dimension of the instruments; None for a single instrument
-    seabed : water depth, to convert heights above the seabed [m]
+    `dimension` is None for a single instrument. `seabed` is the water depth [m], to convert heights
+    above the seabed.
     """
     dims = () if dimension is None else (dimension,)
     for names, sign, start in ((_HEIGHTS, -1.0, seabed), (_DEPTHS, 1.0, 0.0)):
@@ -354,8 +350,7 @@ def find_times(dataset: xr.Dataset, velocity: str) -> str | None:
 def read_times(dataset: xr.Dataset, name: str) -> NDArray[np.datetime64]:
     """Return the times of a variable as (n,) datetime64[ns], in the order of the file.
 
-    Raise UnreadableError if a value is missing or is not a time, or if the calendar differs from
-    the Gregorian calendar.
+    Raise UnreadableError if a value is missing or not a time, or if the calendar is not Gregorian.
     """
     times = dataset[name]
     calendar = str(times.attrs.get("calendar", "standard")).lower()

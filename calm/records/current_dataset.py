@@ -31,21 +31,17 @@ SAMPLED = 64_000_000
 
 
 class CurrentDataset:
-    """A dataset of currents in which velocity, levels, times and position have been identified.
+    """A dataset of currents with identified velocity, levels, times and position.
 
-    Values of the current are read later. The constructor raises UnreadableError if no current can
-    be read; the message gives the reason and the contents of the file.
+    The constructor raises UnreadableError if the file has no usable current. Values are read later.
 
     Attributes
     ----------
     times : (n,) times in file order; None for a profile without a time
-    notices : remarks to read before the data are used
-    turned : notice that the currents were rotated from magnetic to true north; empty if they were
-        not
+    turned : notice of a rotation from magnetic to true north, or empty
     rules : rules by which the file was read
     source : names of the variables, and the position of the grid column
-    labels : names of the parts of a line that carry the instruments, if the levels have no depths;
-        otherwise empty
+    labels : parts of a line that carry the instruments, if the levels have no depths; else empty
     """
 
     def __init__(self, dataset: xr.Dataset, terms: Terms) -> None:
@@ -111,11 +107,11 @@ class CurrentDataset:
         return 8 * levels * (len(self._parts) + self.moves)
 
     def read(self, index: Index) -> Levels:
-        """Read the profiles at the given time indices, or the only profile of a file without times.
+        """Read the profiles at the given time indices, or the only profile.
 
-        Return the depths (k,) [m], or (n, k) if the levels move; the components u and v (n, k)
-        [m/s]; and w (n, k) [m/s], or None if the file has no vertical velocity. A current is inf
-        where the file has a negative speed or a direction outside -360 to 360°.
+        Return depths (k,) [m], or (n, k) if the levels move, and components u, v and w (n, k)
+        [m/s]. w is None without vertical velocity. u and v are inf if the speed is negative, or the
+        direction beyond ±360°.
         """
         first, second, *up = (
             self._along(variable, index, cf_files.known_values) * factor
@@ -147,14 +143,10 @@ class CurrentDataset:
         return np.asarray(np.maximum.reduce(every), np.int8)
 
     def inspected(self, file: str, index: Index) -> tuple[ReadCard, list[str]]:
-        """Return the summary card of the profiles at the given times, and doubts about the values.
+        """Return the summary card of the profiles at given times, and doubts about the values.
 
-        From a large record, evenly spaced profiles are used.
-
-        Parameters
-        ----------
-        file : name of the file
-        index : increasing indices of the times
+        In a large record, a sample of evenly spaced profiles is used. The indices of the times must
+        increase.
         """
         every, times = self.times, None
         notes: list[str] = []

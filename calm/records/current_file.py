@@ -1,8 +1,8 @@
 """Currents from a file of measurements or of a model: NetCDF, zarr or CSV.
 
-A CSV profile has the columns `depth[m],u[m/s],v[m/s]` or `depth[m],speed[m/s],toward[deg]`. A CSV
-record has a first column `time` and a row for each time and depth; the rows of one time must be
-adjacent. A level without a value (blank, `nan` or `NA`) is omitted.
+A CSV profile has columns `depth[m],u[m/s],v[m/s]` or `depth[m],speed[m/s],toward[deg]`. A CSV
+record begins with a column `time`, with adjacent rows for each time. Levels without a value are
+omitted.
 """
 
 from __future__ import annotations
@@ -40,20 +40,14 @@ EXAMPLE = "depth[m],u[m/s],v[m/s]"
 
 
 def read_current_file(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable, list[str]]:
-    """Return the profile of a file at a time, and notices about this profile.
-
-    Parameters
-    ----------
-    path : path of a file in CSV, NetCDF or zarr
-    time : time of the profile in ISO 8601; None if the file has a single profile
-    terms : options for reading the current
+    """Return the current profile of a file at an ISO 8601 time, and notices about the profile.
 
     Raises
     ------
     InputError
         The file has mistakes.
     TimeChoiceError
-        The time is outside the record, or no time is given although the file has several.
+        The time is outside the record, or missing although the file has several times.
     """
     read = _from_arrays if holds_arrays(path) else _from_text
     table, notices = read(path, time, terms)
@@ -71,18 +65,17 @@ def strongest_of(path: Path, terms: Terms) -> float:
 
 
 def open_record(path: Path, terms: Terms, time: Period | None = None, every: int = 1) -> Record:
-    """Open a record in NetCDF, zarr or CSV.
+    """Open a record of currents in NetCDF, zarr or CSV.
 
     Parameters
     ----------
-    path, terms : path of the record, and options for reading its currents
     time : period to read, as returned by `parse_period`; None for the whole record
-    every : n, if only every n-th profile is to be read
+    every : n, to read only every n-th profile
 
     Raises
     ------
     InputError
-        The file is unreadable; the message gives the reason and the contents of the file.
+        The file is unreadable.
     UsageError
         The options select no profile.
     """
@@ -180,7 +173,7 @@ def _time_of_row(row: CellRow, problems: list[Problem]) -> np.datetime64 | None:
 class CsvRecord(Record):
     """A record in CSV, read once into memory.
 
-    For the parameters and errors, see `open_record`. An error lists all mistakes of the file.
+    For the parameters and errors, see `open_record`. An error lists up to `MOST_PROBLEMS` mistakes.
     """
 
     def __init__(self, path: Path, terms: Terms, period: Period | None, every: int) -> None:
@@ -342,14 +335,11 @@ class CurrentHeader:
     ) -> Floats:
         """Convert rows to an array (n, 4) of depth [m], u, v and w [m/s].
 
-        If any row has a mistake, the array is empty and the mistakes are added to `problems`.
+        If a row has a mistake, the array is empty and the mistakes are added to `problems`.
 
         Parameters
         ----------
-        rows : rows of the table
-        problems : list to which mistakes are added
-        terms : options for reading the current
-        profile : (n,) index of the profile of each row; None if all rows form one profile
+        profile : (n,) index of the profile of each row; None for a single profile
         """
         first = int(self.timed)
 

@@ -27,13 +27,12 @@ class Terms:
 
     Attributes
     ----------
-    water_depth : water depth, to convert heights above the seabed [m]; inf if unknown
-    place : position for which the nearest column of a gridded file is read
-    declination : magnetic declination, positive to the east [degrees], by which currents relative
-        to magnetic north are rotated to true north
-    maximum_speed : speed above which a current is treated as a mistake in the file [m/s]
-    on_the_line : whether the file holds instruments on a mooring line. Level labels may then name
-        parts of the line, and bad currents are kept with their flags instead of being excluded
+    water_depth : water depth [m], to convert heights above the seabed; inf if unknown
+    place : position for the nearest column of a gridded file
+    declination : magnetic declination [degrees], positive to the east, for rotation to true north
+    maximum_speed : speed [m/s] above which a current is a mistake
+    on_the_line : whether the file holds instruments on a mooring line. Levels may then be labelled
+        by part of the line, and bad currents keep their flags
     """
 
     water_depth: float = inf
@@ -108,10 +107,10 @@ def time_text(time: np.datetime64) -> str:
 
 
 def choose_time(times: NDArray[np.datetime64], wanted: str | None) -> tuple[int, str | None]:
-    """Return the index of the time nearest to the requested time, and a notice if the two differ.
+    """Return the index of the time nearest to a requested time, and a notice if the times differ.
 
-    Raise TimeChoiceError if the file has no times, if no time is requested although the file has
-    several, if the requested time lies outside the record, or if the file has this time twice.
+    Raise TimeChoiceError if the file has no times, if the requested time is outside the record or
+    occurs twice, or if a request is missing.
     """
     if not len(times):
         raise TimeChoiceError("the file has no times")

@@ -1,7 +1,7 @@
 """Tables in text: separators, quotes, decimal commas and the position of each cell.
 
-Cells are separated by tabs, semicolons, commas or blanks, whichever divides the lines most evenly,
-and may be quoted. Empty lines and text after ``#`` are ignored.
+Separators are tabs, semicolons, commas or blanks; cells may be quoted. Empty lines and text after
+``#`` are ignored.
 """
 
 from __future__ import annotations
@@ -108,12 +108,9 @@ class CellRow(NamedTuple):
 
     Attributes
     ----------
-    path : path of the file
-    number : line number
-    line : original text of the line
-    cells : cells of the line, without the skipped cells at its start
-    dialect : dialect of the table
-    skipped : number of cells skipped at the start of the line
+    number, line : line number and original text
+    cells : cells without the skipped cells at the start of the line
+    skipped : number of skipped cells
     """
 
     path: Path
@@ -191,16 +188,8 @@ class CopiedTable:
 def read_table(path: Path, example: str, lines: Iterable[NumberedLine] | None = None) -> TextTable:
     """Read a table from a file of UTF-8 text.
 
-    Parameters
-    ----------
-    path : path of the file
-    example : sample header, for messages
-    lines : numbered lines of the file, if another reader has already split the file into lines
-
-    Raises
-    ------
-    InputError
-        The file is unreadable or empty, or has no header.
+    `example` is a sample header for messages. `lines` are the numbered lines of a file that is
+    already split. Raise InputError if the file is unreadable or has no header.
     """
     if lines is None:
         text = decoded(path, COMMENT.sub(rb"\1", read_content(path, largest=LARGEST_CSV)))
@@ -212,20 +201,10 @@ def read_table(path: Path, example: str, lines: Iterable[NumberedLine] | None = 
 def table_lines(
     path: Path, lines: Iterable[NumberedLine], example: str
 ) -> tuple[CellRow, Iterator[NumberedLine]]:
-    """Return the header of a table and an iterator over the lines below it.
+    """Return the header of a table, and an iterator over the lines below the header.
 
-    A first column without a heading holds row numbers, as written by R and pandas, and is skipped.
-
-    Parameters
-    ----------
-    path : path of the file
-    lines : all lines of the file
-    example : sample header, for messages
-
-    Raises
-    ------
-    InputError
-        There are no lines, or no header.
+    A first column without a heading, as written by R and pandas, is skipped. `example` is a sample
+    header for messages. Raise InputError without a header.
     """
     lines = _content(lines)
     sample = list(islice(lines, _SAMPLE))
@@ -250,9 +229,8 @@ def table_lines(
 def copied_table(text: str) -> CopiedTable:
     """Parse a table copied from a spreadsheet, a file or a web page.
 
-    The first line is a header unless one of its cells begins with a number.
-    `calm.records.profile_tables` interprets the cells. Raise NoTableError if there are no rows, or
-    if rows differ in length.
+    A first line without numbers is the header. Raise NoTableError if there are no rows, or if rows
+    differ in length.
     """
     lines = list(_content(enumerate(text.splitlines(), 1)))
     dialect = dialect_of([line.strip(" ") for _, line in lines])
@@ -284,16 +262,11 @@ def cells_in(text: str) -> list[list[str]]:
 
 
 def dialect_of(lines: Sequence[str], *, words: bool = False) -> Dialect:
-    """Find the separator and the decimal symbol of a table.
+    """Find the separator and the decimal symbol of a table, given lines without blank lines and
+    comments.
 
-    The separator is the symbol that divides most lines into the same number of cells. The decimal
-    symbol is a comma if a number has a comma that cannot separate thousands, and no number has a
-    point.
-
-    Parameters
-    ----------
-    lines : lines that are neither empty nor comments
-    words : whether cells may contain several words, so that blanks do not separate cells
+    If `words`, blanks do not separate cells. The decimal symbol is a comma if some comma cannot
+    separate thousands and no number has a point.
     """
     best, most = ",", 0
     for separator in _SEPARATORS:
@@ -390,9 +363,8 @@ _FORMULA = ("=", "+", "-", "@", "\t", "\n")
 def table_csv(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
     """Return a table as CSV text, with empty cells for None and NaN.
 
-    Numbers have at most twelve significant digits, to hide rounding noise. An apostrophe precedes
-    texts that begin with ``=``, ``+``, ``-`` or ``@``, which spreadsheets would interpret as
-    formulas.
+    Numbers have at most twelve significant digits. An apostrophe precedes texts that spreadsheets
+    would interpret as formulas.
     """
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")

@@ -30,20 +30,11 @@ def as_file(given: Given) -> Iterator[Path]:
 def as_files(given: Any, folder: Path, name: str) -> list[str]:
     """Write datasets and tables to a folder, and return the paths of all records.
 
-    A dataset must have the contents that CALM expects of a NetCDF file. A table must have the
-    columns that CALM expects of a CSV file. The index of a table may hold the times.
+    A dataset needs the contents of a NetCDF record, and a table the columns of a CSV record. The
+    index of a table may hold the times. A mapping from labels to records gives texts
+    ``LABEL=PATH``. `name` is the prefix of the file names.
 
-    Parameters
-    ----------
-    given : a record, several records, or a mapping from labels to records; for a mapping, the texts
-        ``LABEL=PATH`` are returned
-    folder : folder in which the files are written
-    name : prefix of the file names
-
-    Raises
-    ------
-    TypeError
-        A record is neither a path nor an object of xarray or pandas.
+    Raise TypeError if a record is neither a path nor an object of xarray or pandas.
     """
     if isinstance(given, Mapping) and not is_record(given):
         each = [as_files(one, folder, f"{name}-{i}") for i, one in enumerate(given.values())]

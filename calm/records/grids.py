@@ -40,11 +40,8 @@ _PLACES = {
 class GridColumn:
     """A water column in a gridded dataset.
 
-    Attributes
-    ----------
-    index : index of the column along every horizontal dimension
-    place : position of the column; None if the file does not give the position
-    notes : remarks on the choice of the column
+    `index` is the index along each horizontal dimension. `place` is None if the file does not give
+    the position. `notes` explain the choice of the column.
     """
 
     index: dict[str, int]
@@ -64,19 +61,13 @@ def is_regular(dataset: xr.Dataset) -> bool:
 def choose_column(
     dataset: xr.Dataset, velocity: tuple[str, str], time: str | None, wanted: Place | None
 ) -> GridColumn:
-    """Select the grid column nearest to a place, or the only column.
+    """Select the nearest grid column with a current, or the only column.
 
-    Parameters
-    ----------
-    velocity : names of the two velocity variables, which must have values in the column
-    time : dimension of the times
-    wanted : latitude and longitude; None selects the only column
+    `velocity` names two variables, and `time` the dimension of the times. `wanted` is latitude and
+    longitude, needed to choose from several columns.
 
-    Raises
-    ------
-    UnreadableError
-        The file has several columns and no place is given, the place is outside the grid, or no
-        column nearby has a current.
+    Raise UnreadableError if the position is missing or outside the grid, if no column nearby has a
+    current, or if the grid is staggered.
     """
     import xarray as xr
 
@@ -176,10 +167,10 @@ def _indices_around(
 
 
 def _nearest(away: Floats) -> NDArray[Any]:
-    """Return the indices, in axis order, of the points of an axis nearest to a position.
+    """Return the indices of the grid points nearest to a position along an axis, in axis order.
 
-    The number of points is at most ``2 REACH + 1``. On a longitude axis around the globe, they may
-    include both ends. `away` has the signed distances from the position [degrees].
+    `away` has the signed distances from the position [degrees]. At most ``2 REACH + 1`` points are
+    returned, around the globe possibly from both ends.
     """
     near = np.argsort(np.abs(away), kind="stable")[: 2 * REACH + 1]
     return near[np.argsort(away[near], kind="stable")]
@@ -277,10 +268,9 @@ class SeabedGrid:
 
     Attributes
     ----------
-    path, sha256 : path and checksum of the file
     latitude, longitude : origin of the mooring coordinates [degrees]
-    reach : half the side of the square around the origin in which nodes are read [m]
-    east, north : distances of the point east and north of the origin [m]
+    reach : half the side of the square around the origin that is read [m]
+    east, north : distances of the point from the origin [m]
     """
 
     path: str = field(compare=False)
@@ -339,8 +329,7 @@ class SeabedGrid:
     def slope(self) -> float:
         """Slope of the seabed at the point [degrees].
 
-        The gradient along each axis is the steeper of the two gradients over one node spacing, on
-        either side of the point.
+        The gradient along each axis is the steeper of the gradients on either side of the point.
         """
         across, along = np.abs(self._falls).max(axis=1)
         return float(np.degrees(np.arctan(np.hypot(across, along))))

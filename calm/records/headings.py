@@ -1,7 +1,7 @@
-"""Column headings of text tables: a name and its unit, in the common notations.
+"""Column headings of text tables: a name and its unit, in common notations.
 
 Examples are ``depth[m]``, ``Depth (m)``, ``depth m``, ``toward[deg magnetic]`` and ``time (UTC)``.
-A name of several words needs brackets around its unit, or a known unit.
+Names of several words need a unit in brackets, or a known unit.
 """
 
 import re
@@ -28,9 +28,8 @@ _MAGNETIC = re.compile(r"(?i)\s*\bmag(netic)?$")
 def heading(column: str, dimensions: Sequence[str] = ()) -> tuple[str, str]:
     """Split a heading into its name and its unit; a missing unit is empty.
 
-    The unit is in brackets. If `dimensions` (keys of `calm.units.DIMENSIONS`) are given, a unit
-    without brackets is also found: the name ends where a known unit begins, preferably a unit of
-    one of these dimensions.
+    Units are in brackets. With `dimensions` (keys of `calm.units.DIMENSIONS`), known units are also
+    found without brackets, preferably units of these dimensions.
     """
     text = " ".join(column.split())
     bracketed = _BRACKETED.fullmatch(text)
@@ -57,20 +56,19 @@ def column_unit(
 ) -> tuple[str, float]:
     """Return the dimension of a column, and the factor from its unit to SI (degrees for angles).
 
-    Latitudes and longitudes need no unit. They are in degrees, or in degrees and minutes.
+    Latitudes and longitudes need no unit.
 
     Parameters
     ----------
-    column : heading of the column, for messages
-    unit : unit in the heading; empty if the heading has none
+    column : heading, for messages
+    unit : unit in the heading, or empty
     dimensions : allowed dimensions, keys of `calm.units.DIMENSIONS`
-    usual : unit to suggest; by default the SI unit
+    usual : unit to suggest
 
     Raises
     ------
     QuantityError
-        The unit is missing, unknown or of another dimension. The text of the error is a complete
-        message.
+        The unit is missing, unknown or of another dimension. The text is a complete message.
     """
     name = heading(column, dimensions)[0]
     if not unit and dimensions[0] in HEMISPHERES:
@@ -137,13 +135,8 @@ _INFINITE = ("inf", "infinity")
 class NamedColumns:
     """Rows of a table in which the known columns have been identified by name.
 
-    Attributes
-    ----------
-    factors : factor that converts a known column to SI units (degrees for angles), by name
-    places : index of each known column in a row, by name
-    rows : rows with as many cells as the header
-    others : headings of the other columns
-    header : header of the table
+    `factors` to SI units (degrees for angles) and `places` in a row are by column name. `rows` are
+    complete, and `others` are the headings of unknown columns.
     """
 
     factors: Mapping[str, float]
@@ -164,9 +157,8 @@ class TimeColumns:
 
     Attributes
     ----------
-    time : (n,) increasing times, to the nanosecond
-    names : label of each of the c columns
-    dimensions : dimension of each column, as a key of `calm.units.DIMENSIONS`
+    time : (n,) increasing times
+    names, dimensions : label and dimension (key of `calm.units.DIMENSIONS`) of the c columns
     values : (n, c) values in SI units; NaN in gaps
     """
 
@@ -183,14 +175,13 @@ def read_named_columns(
     *,
     other_names: Mapping[str, str] = MappingProxyType({}),
 ) -> NamedColumns:
-    """Find the known columns of a table; mistakes in headings and rows are added to `problems`.
+    """Find the known columns of a table by name.
 
     Parameters
     ----------
-    table : table of a file
     known : dimension of each known column by name; spaces in headings are read as underscores
     problems : list to which mistakes are added
-    other_names : known name for each alternative name of a column
+    other_names : known name by alternative name
     """
     header = table.header
     names = [heading(column)[0].lower().replace(" ", "_") for column in header.cells]
@@ -216,16 +207,8 @@ def read_named_columns(
 def read_time_columns(path: Path, dimensions: Sequence[str], example: str) -> TimeColumns:
     """Read a table of times and quantities; the heading of a quantity has a label and a unit.
 
-    Parameters
-    ----------
-    path : path of the table
-    dimensions : allowed dimensions of the columns, keys of `calm.units.DIMENSIONS`
-    example : sample heading, for messages
-
-    Raises
-    ------
-    InputError
-        The table has mistakes; the error lists all of them.
+    `dimensions` are the allowed dimensions of columns, keys of `calm.units.DIMENSIONS`. `example`
+    is a sample heading for messages. Raise InputError with up to `MOST_PROBLEMS` mistakes.
     """
     table = delimited.read_table(path, f"time,{example}")
     header = table.header

@@ -1,8 +1,7 @@
 """Time series from the instruments of a mooring: temperature, salinity, velocity.
 
-A file holds either several instruments along a dimension, as for `calm motion`, or a single
-instrument, as in archives (OceanSITES, IMOS). The file identifies an instrument by a label, a
-serial number or a nominal depth.
+A file holds a single instrument, or several instruments along a dimension. An instrument has a
+label, a serial number or a nominal depth.
 """
 
 from __future__ import annotations
@@ -54,11 +53,8 @@ _ONE_PLACE = ("instrument_nominal_depth", "nominal_depth", "sensor_depth")
 class Identity:
     """Identity of an instrument, as stated in its file.
 
-    Attributes
-    ----------
-    label, serial : label and serial number; empty if missing in the file
-    nominal : nominal depth [m]; NaN if missing in the file
-    source : name of the file
+    A missing label or serial number is empty. `nominal` is the nominal depth [m], NaN if missing.
+    `source` is the file name.
     """
 
     label: str
@@ -83,14 +79,13 @@ class InstrumentSeries(Identity):
 
     Attributes
     ----------
-    time : (n,) increasing times, to the nanosecond
-    value : (n,) values in the unit of the quantity; NaN if missing or rejected by a flag
+    time : (n,) increasing times
+    value : (n,) values in the unit of the quantity; NaN if missing or rejected
     dropped : number of readings rejected by their flags
     below : distance of a profiler's bin below the profiler [m]; 0 for other instruments
-    note : remarks on doubts and assumptions
-    card : summary card of the file
-    pressure : median pressure in the file [dbar]; NaN without pressures
-    called : label stated in the file, even if the user gives another label; empty if missing
+    note : doubts and assumptions
+    pressure : median pressure in the file [dbar], or NaN
+    called : label stated in the file, even if the user gives another label
     """
 
     time: NDArray[np.datetime64]
@@ -103,18 +98,10 @@ class InstrumentSeries(Identity):
     called: str = ""
 
     def checked(self, quantity: str, variable: str, notes: Sequence[str] = ()) -> InstrumentSeries:
-        """Return the series with NaN in place of impossible values, and doubts added to its note.
+        """Return the series with impossible values set to NaN and doubts added to `note`.
 
-        Parameters
-        ----------
-        quantity : name of the quantity
-        variable : name of the source variable
-        notes : further remarks
-
-        Raises
-        ------
-        UnreadableError
-            Most values are impossible for sea water, so the unit must be wrong.
+        `variable` is the name in the file. Raise UnreadableError if most values are impossible for
+        sea water.
         """
         value, remarks = self.value, [*notes]
         if quantity in WATER:
@@ -139,16 +126,15 @@ def read_series(
     seabed: float,
     usual: Mapping[str, float] = MappingProxyType({}),
 ) -> dict[str, list[InstrumentSeries]]:
-    """Read time series from files, and return a list of series for each quantity name.
+    """Read time series from files; return the series by quantity name.
 
     Parameters
     ----------
-    given : paths of files, ``LABEL=PATH`` for a file of one instrument, or folders of such files
-    names : names of the quantities, keys of `QUANTITIES_MEASURED`
-    flags : accepted quality flags, for files with flags; 8 is never accepted
-    seabed : water depth, to convert nominal heights above the seabed [m]; NaN if unknown
-    usual : depth of each part of the line by label [m], for files that have neither pressures nor a
-        nominal depth
+    given : paths of files, ``LABEL=PATH`` for a file of one instrument, or folders
+    names : keys of `QUANTITIES_MEASURED`
+    flags : accepted quality flags; flag 8 is never accepted
+    seabed : water depth [m], to convert heights above the seabed; NaN if unknown
+    usual : depth [m] by label, for files with neither pressures nor a nominal depth
 
     Raises
     ------
@@ -177,10 +163,9 @@ def read_series(
 
 
 def files_given(given: Sequence[str]) -> list[tuple[str, Path]]:
-    """Return pairs of label and path for all files given; the label is empty if none is given.
+    """Return the label and the path of each file given; the label may be empty.
 
-    A folder stands for the data files in it. Raise InputError if a file does not exist, or if a
-    folder has no data files.
+    A folder stands for the data files in the folder. Raise InputError if there is no file.
     """
     found: list[tuple[str, Path]] = []
     problems = []
@@ -251,15 +236,11 @@ def _opened(path: Path) -> Iterator[xr.Dataset]:
 
 
 def instruments_apart(dataset: xr.Dataset) -> list[xr.Dataset]:
-    """Split a dataset in which the readings of several instruments share one dimension.
+    """Split a dataset of several instruments into one dataset per instrument.
 
-    In the indexed ragged arrays of CF, a variable with the attribute `instance_dimension` gives the
-    instrument of each reading, as in the aggregated and hourly products of IMOS. In contiguous
-    ragged arrays, a variable with the attribute `sample_dimension` gives the number of readings of
-    each instrument. Readings without an instrument are excluded. A dataset with neither variable is
-    returned unsplit.
-
-    Raise UnreadableError if such a variable does not fit the dimensions.
+    Only a ragged array of CF, indexed (`instance_dimension`) or contiguous (`sample_dimension`), is
+    split. Readings without an instrument are excluded. Raise UnreadableError if the array is
+    inconsistent.
     """
     for name, index in dataset.variables.items():
         instances = index.attrs.get("instance_dimension")
@@ -399,10 +380,10 @@ class _SeriesFile:
 
 
 def conductivity_in(dataset: xr.Dataset) -> dict[str, str]:
-    """Return the names of the variables from which salinity can be computed, by quantity name.
+    """Return the names of the variables for computing salinity, by quantity name.
 
-    The quantities are conductivity, temperature and, if present, pressure. The result is empty
-    unless the dataset has both conductivity and temperature.
+    The quantities are conductivity, temperature and, optionally, pressure. Without conductivity or
+    temperature, the result is empty.
     """
     temperature = QUANTITIES_MEASURED["temperature"]
     sought = {
@@ -424,7 +405,7 @@ def practical_salinity(
     ----------
     taken : variables as returned by `conductivity_in`
     values : values of these variables, in the units of the file and with equal shapes
-    depth : depth used if a pressure is missing [m]; an error of 10 m changes salinity by 0.004
+    depth : depth used if a pressure is missing [m]
     """
     import gsw
 
@@ -439,6 +420,7 @@ def practical_salinity(
     }
     pressure = parts.get("pressure", np.full_like(parts["temperature"], np.nan))
     known = np.isfinite(pressure)
+    # a depth error of 10 m changes salinity by 0.004
     pressure = np.where(known, pressure, pressure_at(depth, _LATITUDE))
     with np.errstate(invalid="ignore"):
         salinity: Floats = gsw.SP_from_C(parts["conductivity"], parts["temperature"], pressure)
@@ -467,11 +449,10 @@ def _decibars(variable: xr.DataArray, values: Floats) -> Floats:
 def named(dataset: xr.Dataset, sought: Sequence[str], usual: Sequence[str]) -> list[str]:
     """Return the names of the variables of a quantity.
 
-    These are the variables with the first standard name of `sought` that occurs in the dataset. If
-    any of these variables has a name in `usual`, only such variables are returned. If no standard
-    name occurs, the variables with a name in `usual` are returned. Raise UnreadableError if several
-    variables have the standard name and none of them has a usual name, or if a variable with a
-    usual name has another standard name.
+    Variables with the first standard name of `sought` in the dataset take precedence, else names in
+    `usual` count. Of several variables with one standard name, those with a usual name are
+    returned. Raise UnreadableError if there are none, or if a usual name belongs to another
+    standard name.
     """
     there = _standard(dataset, sought)
     known = [one for one in usual if one in (there or dataset.data_vars)]
@@ -496,16 +477,14 @@ def _standard(dataset: xr.Dataset, sought: Sequence[str]) -> list[str]:
 
 @dataclass(frozen=True)
 class Readings:
-    """Values of several variables for k instruments at n times.
+    """Values of several variables for k instruments at n increasing times.
 
     Attributes
     ----------
-    time : (n,) increasing times
-    axis : dimension of the times
-    along : dimension of the instruments; None for a single instrument
+    axis, along : dimensions of the times and of the instruments; `along` is None for one instrument
     values : (n, k) values of each variable, in the units of the file
     dropped : (n, k) mask of readings rejected by a flag of any variable
-    clock : name and unit of the times
+    clock : name and unit of the time variable
     flags : number of rejected readings by flag variable
     """
 
@@ -531,8 +510,7 @@ def readings(dataset: xr.Dataset, names: Sequence[str], flags: frozenset[int]) -
 
     Parameters
     ----------
-    names : names of the variables
-    flags : accepted quality flags; 8 is never accepted
+    flags : accepted quality flags; flag 8 is never accepted
 
     Raises
     ------
@@ -597,13 +575,9 @@ def card_of(
 
 
 def who_along(dataset: xr.Dataset, along: str | None, seabed: float, source: str) -> list[Identity]:
-    """Identify the instruments along a dimension.
+    """Identify the instruments along a dimension, or the only instrument if `along` is None.
 
-    Parameters
-    ----------
-    along : dimension of the instruments; None for a file of one instrument
-    seabed : water depth, to convert heights above the seabed [m]
-    source : name of the file
+    `seabed` is the water depth [m], to convert heights above the seabed.
     """
     if along is None:
         single = [str(dim) for dim, size in dataset.sizes.items() if size == 1]

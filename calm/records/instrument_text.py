@@ -1,8 +1,7 @@
 """Text files of single instruments, converted to datasets as found in archives.
 
-RODB files (`.use`, `.microcat` and `.rcm` of RAPID and OSNAP) have lines ``Name = value`` above
-columns with fixed units. Sea-Bird's `.cnv` files, the tables of RBR's RSKtools library and plain
-tables such as ``time,temperature[degC],salinity[PSU]`` name each column and its unit in the header.
+RODB files (`.use`, `.microcat`, `.rcm`) have lines ``Name = value`` above columns with fixed units.
+Sea-Bird `.cnv` files, RBR RSKtools tables and plain tables have units in the header.
 """
 
 from __future__ import annotations
@@ -66,12 +65,11 @@ _MISSING = (-9999.0, -999.0, -99.999, -9.99e-29, 1e35)
 
 
 def reader_of(path: Path) -> Callable[[Path], xr.Dataset] | None:
-    """Return the function that reads a text file of an instrument; None for any other file.
+    """Return the function that reads an instrument's text file, or None for any other file.
 
-    The function returns a dataset with the names and attributes of OceanSITES. Times are seconds
-    since 1970, and missing values are NaN. For currents, `INSTRUMENT_DEPTH` is computed from
-    pressure by TEOS-10; without pressure, it is the nominal depth. The function raises InputError
-    if the file is unreadable, has no times, or has an invalid row.
+    The function returns a dataset with OceanSITES names, times in seconds since 1970, and NaN for
+    missing values. The function raises InputError if the file is unreadable, has no times, or has
+    an invalid row.
     """
     with path.open("rb") as file:
         head = file.read(_HEAD).decode("latin-1")

@@ -37,16 +37,12 @@ _STANDARD_DEPTH = "depth"
 class LevelDepths:
     """Levels of a current at depths ``start + factor * variable``, positive down [m].
 
-    If `instrument` is set, the depth of the instrument is added.
-
     Attributes
     ----------
-    variable : level variable; all its dimensions are dimensions of the velocity
+    variable : level variable; its dimensions are dimensions of the velocity
     factor : signed factor to metres; negative if values increase upwards
     start : depth at which the values are zero [m]
-    instrument : depth variable of the instrument from which levels are counted, and its factor to
-        metres
-    notes : remarks on assumptions
+    instrument : depth variable of an instrument, and its factor to metres; this depth is added
     """
 
     variable: xr.DataArray
@@ -83,22 +79,11 @@ class LevelDepths:
 def find_levels(
     dataset: xr.Dataset, level: str | None, time: str | None, water_depth: float
 ) -> LevelDepths:
-    """Find the levels of a velocity.
+    """Find the depths of the levels of a velocity; moving levels take precedence over fixed ones.
 
-    If a file describes both moving and fixed levels, the moving levels are used.
-
-    Parameters
-    ----------
-    dataset : dataset of the velocity
-    level : level dimension of the velocity; None if the velocity has no such dimension
-    time : time dimension of the velocity; None if the velocity has no such dimension
-    water_depth : water depth, to convert heights above the seabed [m]
-
-    Raises
-    ------
-    UnreadableError
-        There are no levels, or the file does not state whether values increase upwards or
-        downwards.
+    `level` and `time` are dimensions of the velocity, or None. `water_depth` [m] converts heights
+    above the seabed. Raise UnreadableError if there are no levels, or if it is unclear whether
+    values increase upwards or downwards.
     """
     standard, wanted = dataset.cf.standard_names, {level} - {None}
     names = [

@@ -34,7 +34,7 @@ are shallower."""
 
 
 def direction_doubts(directions: Sequence[float], name: str) -> Iterator[str]:
-    """Yield a remark if directions appear to be in radians, or to be northward velocities.
+    """Report directions that appear to be in radians, or to be northward velocities.
 
     Parameters
     ----------
@@ -58,15 +58,10 @@ def direction_doubts(directions: Sequence[float], name: str) -> Iterator[str]:
 
 
 def profile_doubts(depth: Floats, u: Floats, v: Floats, water_depth: float) -> Iterator[str]:
-    """Yield remarks on doubtful levels of one profile.
+    """Report doubtful levels of one profile, in sentences without a full stop.
 
-    The remarks do not end with a full stop.
-
-    Parameters
-    ----------
-    depth : (n,) increasing depths [m]
-    u, v : (n,) eastward and northward components, without gaps [m/s]
-    water_depth : water depth [m]; inf if unknown
+    Depths (n,) [m] increase, and components u, v (n,) [m/s] have no gaps. An unknown water depth is
+    inf.
     """
     speed, toward = np.hypot(u, v), np.degrees(np.arctan2(u, v))
     yield from _reversed_levels(depth, speed, toward)
@@ -100,13 +95,10 @@ def _between(one: float, other: float) -> float:
 
 
 def strength_doubts(depth: Floats, speed: Floats, water_depth: float) -> Iterator[str]:
-    """Yield a remark if currents are stronger than any currents measured in deep water.
+    """Report currents that are stronger than any measured in deep water.
 
-    Parameters
-    ----------
-    depth : (n,) depths of the levels [m]
-    speed : (n,) maximum speed at each level [m/s]
-    water_depth : water depth [m]; inf if unknown
+    Depths (n,) are in metres and maximum speeds (n,) at these depths in m/s. An unknown water depth
+    is inf.
     """
     if not _SHELF < water_depth < inf:
         return

@@ -29,14 +29,12 @@ A place is ``("columns", j)`` or ``("rows", i, j)``.
 
 @dataclass(frozen=True)
 class QuantityTable:
-    """A table of quantities as text, and a list that collects the mistakes in the table.
+    """A table of quantities by depth, as text.
 
     Attributes
     ----------
-    columns : names with units, such as ``"depth m"`` or ``"depth[m]"``; if a heading has no unit,
-        each value in the column has its own unit
-    rows : numbers, or quantities with a unit, as text
-    report : function that creates a `Problem` for a place in the table and a message
+    columns : headings with units, such as ``"depth m"`` or ``"depth[m]"``
+    rows : numbers, or quantities with a unit if the heading has none
     problems : list to which mistakes are added
     """
 
@@ -59,8 +57,8 @@ def read_columns(
 ) -> dict[str, Floats]:
     """Convert the known columns of a table to SI units; return arrays by column name.
 
-    A wrong value becomes NaN, and a mistake is added to the problems of the table. `gaps` is a mask
-    of rows in which a value may be missing.
+    Mistakes are added to the problems of the table, and wrong values become NaN. `gaps` masks rows
+    in which values may be missing.
     """
     columns, rows = table.columns, table.rows
     units = _unit_by_column(table, known)
@@ -159,14 +157,10 @@ def check_depths(
     rows: Integers,
     profile: Integers | None = None,
 ) -> None:
-    """Check that depths are not negative and increase within each profile.
+    """Check that depths are between 0 and `DEEPEST`, and increase within each profile.
 
-    Parameters
-    ----------
-    table : table to whose `problems` the mistakes are added
-    values : values in SI units, by name of the column
-    rows : indices of the rows to check
-    profile : index of the profile of each row; None if all rows form one profile
+    Mistakes are added to the `problems` of the table. `values` are in SI units. `profile` is the
+    profile index of each row, or None for a single profile.
     """
     if "depth" not in values:
         return
@@ -226,11 +220,8 @@ _WATER = {"depth": _DEPTH, "density": DENSITY, "temperature": TEMPERATURE, "sali
 class CurrentTable:
     """A current profile: eastward, northward and upward velocity [m/s] at increasing depths [m].
 
-    Attributes
-    ----------
-    record : path of the record from which the profile was read, and the options used to read it
-    doubts : remarks on suspicious directions
-    card : summary card of the file
+    `record` is the record file and the options for reading, or None. `doubts` are remarks on
+    suspicious directions.
     """
 
     depth: tuple[float, ...]
@@ -259,16 +250,10 @@ class SeaWater:
 
 
 def read_current(table: QuantityTable, terms: Terms = _DEFAULT_TERMS) -> CurrentTable | None:
-    """Parse a current from a table.
+    """Parse a current profile; return None and record the problems if the table has mistakes.
 
-    If the table has mistakes, they are added to its `problems`, and None is returned.
-
-    Parameters
-    ----------
-    table : table with the column `depth`; with `u` and `v`, or `speed` and either `toward` or
-        `from`; and optionally with `w`. A unit such as ``"deg magnetic"`` marks a column as
-        relative to magnetic north
-    terms : options, of which the declination and the maximum speed are used
+    Columns are `depth`, optionally `w`, and either `u` and `v`, or `speed` and one of `toward` and
+    `from`. A unit such as ``"deg magnetic"`` marks directions relative to magnetic north.
     """
     found = read_currents(table, terms)
     if found is None:
@@ -293,13 +278,9 @@ def read_currents(
 ) -> Floats | None:
     """Convert a table of currents to an array (n, 4) of depth [m] and u, v, w [m/s].
 
-    If the table has mistakes, they are added to its `problems`, and None is returned.
-
-    Parameters
-    ----------
-    table, terms : as in `read_current`
-    profile : (n,) increasing index of the profile to which each row of a record belongs; missing
-        values then become NaN. None if all rows form one profile
+    Return None and record the problems if the table has mistakes. `profile` (n,) is the increasing
+    profile index of each row; missing values then become NaN. Without `profile`, missing values are
+    mistakes.
     """
     columns, rows, before = table.columns, table.rows, len(table.problems)
     plain, turned = _from_magnetic_north(table, terms)
@@ -385,12 +366,8 @@ def read_water(
 ) -> DepthTable | SeaWater | None:
     """Read a profile of density [kg/m³], or of temperature and salinity, from a table.
 
-    If the table has mistakes, they are added to its `problems`, and None is returned.
-
-    Parameters
-    ----------
-    table : table with the column `depth`, and either `density` or `temperature` and `salinity`
-    density : plausible range of the density
+    Return None and record the problems if the table has mistakes. Columns are `depth`, and
+    `density` or `temperature` and `salinity`.
     """
     values = _profile_by_name(table, {**_WATER, "density": density})
     if values is None:
@@ -403,7 +380,7 @@ def read_water(
 def read_profile(name: str, table: QuantityTable) -> DepthTable | None:
     """Parse a profile of `temperature` [°C] or `salinity` from a table.
 
-    If the table has mistakes, they are added to its `problems`, and None is returned.
+    Return None and record the problems if the table has mistakes.
     """
     values = _profile_by_name(table, {"depth": _DEPTH, name: _WATER[name]})
     return None if values is None else values[name]

@@ -1,7 +1,6 @@
 """Records of currents in NetCDF, zarr or CSV, with many profiles that are read lazily.
 
-The module also makes a synthetic example record: thirty days with a tide, a mean flow and a storm
-surge.
+The module also makes a synthetic example record of thirty days.
 """
 
 from __future__ import annotations
@@ -47,16 +46,15 @@ RULES = (
 class Record(ABC):
     """The selected profiles of a record, in order of time.
 
-    Use a record in one thread at a time, and close it with `close` or a `with` statement.
+    A record must be used in one thread at a time, and closed.
 
     Attributes
     ----------
-    time : (n,) increasing times, to the nanosecond
-    notes : rules by which the record was read, and doubts about it
-    source : names of the file and of its variables, and the position
+    time : (n,) increasing times
+    notes : rules of reading, and doubts
+    source : names of the file and of the variables, and the position
     cards : summary card of each file
-    labels : names of the parts of a line that carry the instruments, if the levels have no depths;
-        otherwise empty
+    labels : parts of a line that carry the instruments, if the levels have no depths; else empty
     """
 
     time: NDArray[np.datetime64]
@@ -74,9 +72,9 @@ class Record(ABC):
     def profiles(self, start: int, stop: int) -> Levels:
         """Return the depths and velocities of the m profiles from `start` to `stop`.
 
-        The depths (k,) or (m, k) [m] are positive down, and may be in any order. The velocities u,
-        v and w, each (m, k) [m/s], are NaN in gaps. w is None if the record has no vertical
-        velocity. Raise InputError if the file is damaged in this range.
+        Depths [m], (k,) or (m, k), are positive down, in any order. u, v and w [m/s], each (m, k),
+        are NaN in gaps. w is None without vertical velocity. Raise InputError if the file is
+        damaged.
         """
 
     def flags(self, start: int, stop: int) -> NDArray[np.int8] | None:
@@ -97,9 +95,8 @@ class Record(ABC):
 def parse_period(text: str) -> Period:
     """Parse a period ``A/B`` of ISO 8601 times.
 
-    If B is a year, a month or a day, the period includes the whole of B. Either end may be missing,
-    as in ``2026-03/`` or ``../2026-03-31``. Raise UsageError if the text is not a period, or if the
-    period ends before it begins.
+    A year, month or day B is included as a whole. Either end may be open, as in ``2026-03/`` or
+    ``../2026-03-31``. Raise UsageError if the period is invalid.
     """
     first, slash, last = text.partition("/")
     if not slash:
@@ -113,9 +110,8 @@ def parse_period(text: str) -> Period:
 def parse_place(text: str) -> Place:
     """Parse a position ``LAT,LON`` [degrees north, degrees east].
 
-    The longitude may range from −180 to 180 or from 0 to 360. Latitude and longitude may be in
-    degrees and minutes, as in ``57 28.84 N, 19 10.2 W``. Raise UsageError if the text is not a
-    position on the earth.
+    Each coordinate may be in degrees and minutes, as in ``57 28.84 N, 19 10.2 W``. Raise UsageError
+    if the text is not a position.
     """
     parts = text.split(",")
     try:
@@ -133,12 +129,8 @@ def choose_profiles(
 ) -> tuple[Index, tuple[str, ...]]:
     """Return the indices of the profiles to read, in order of time, and notices on the choice.
 
-    Parameters
-    ----------
-    times : (n,) times in file order
-    period : first and last time to read; None for all times
-    every : n, if only every n-th profile is to be read
-    path : path of the record, for messages
+    `times` (n,) are in file order. `period` is None for all times. Every n-th profile is read, with
+    n in `every`.
 
     Raises
     ------
@@ -177,12 +169,12 @@ def choose_profiles(
 
 
 def part(index: Index, start: int, stop: int) -> Index:
-    """Return the file indices of a range of the chosen profiles.
+    """Return the file indices of some of the chosen profiles.
 
     Parameters
     ----------
     index : file indices of all chosen profiles
-    start, stop : range of the chosen profiles, from `start` up to but not including `stop`
+    start, stop : positions among the chosen profiles; `stop` is excluded
     """
     if not isinstance(index, slice):
         return index[start:stop]

@@ -85,10 +85,9 @@ class SeaState:
     significant_height : Hs, four times the standard deviation of the elevation [m]
     peak_period : Tp [s]
     density : one-sided spectrum of the elevation [m² s/rad] over angular frequency [rad/s]
-    share : share of the time for which this sea state lasts, in a set of several sea states
-    longest, shortest : longest and shortest peak period of a sea with several components [s]. For a
-        measured sea, `longest` is chosen so that `frequencies` begins at the lowest frequency with
-        appreciable energy
+    share : fraction of time of this sea state in a set
+    longest, shortest : longest and shortest peak period of several components [s]. In a measured
+        sea, `longest` makes `frequencies` begin at the lowest frequency with energy
     """
 
     significant_height: float
@@ -120,8 +119,7 @@ class SeaState:
 def bretschneider(height: float, period: float) -> Density:
     """Return the spectrum of a growing or fully developed sea with Hs [m] and Tp [s].
 
-    S = 5/16 Hs² ωp⁴ ω⁻⁵ exp(-5/4 (ωp/ω)⁴). This is the spectrum of Bretschneider 1959, also known
-    as the two-parameter ITTC spectrum.
+    S = 5/16 Hs² ωp⁴ ω⁻⁵ exp(-5/4 (ωp/ω)⁴) (Bretschneider 1959; the two-parameter ITTC spectrum).
     """
     return SpectralForm(_gamma_form, (((height, 2.0 * pi / period, 1.0),),))
 
@@ -129,12 +127,8 @@ def bretschneider(height: float, period: float) -> Density:
 def ochi_hubble(parts: Sequence[tuple[float, float, float]]) -> Density:
     """Return the combined spectrum of swell and wind sea of Ochi and Hubble 1976.
 
-    S = Σ ¼ ((4λ + 1)/4 ωp⁴)^λ / Γ(λ) Hs² ω^-(4λ+1) exp(-(4λ + 1)/4 (ωp/ω)⁴).
-
-    Parameters
-    ----------
-    parts : Hs [m], Tp [s] and λ of each component; λ = 1 gives the Bretschneider spectrum, and a
-        larger λ gives a narrower spectrum
+    S = Σ ¼ ((4λ + 1)/4 ωp⁴)^λ / Γ(λ) Hs² ω^-(4λ+1) exp(-(4λ + 1)/4 (ωp/ω)⁴). Each component has Hs
+    [m], Tp [s] and λ. A larger λ gives a narrower spectrum; λ = 1 is Bretschneider.
     """
     terms = tuple((height, 2.0 * pi / period, narrow) for height, period, narrow in parts)
     return SpectralForm(_gamma_form, (terms,))
@@ -151,9 +145,8 @@ def _gamma_form(parts: tuple[tuple[float, float, float], ...], omega: Floats) ->
 def jonswap(height: float, period: float, gamma: float = 3.3) -> Density:
     """Return the JONSWAP spectrum of a fetch-limited sea with Hs [m], Tp [s] and peakedness gamma.
 
-    The Bretschneider spectrum is multiplied by gamma^exp(-(ω - ωp)²/(2 σ² ωp²)), with σ = 0.07
-    below the peak and 0.09 above the peak (Hasselmann and others 1973). The product is normalised
-    to the given Hs.
+    The Bretschneider spectrum times gamma^exp(-(ω - ωp)²/(2 σ² ωp²)) is normalised to Hs. σ is 0.07
+    below and 0.09 above the peak (Hasselmann and others 1973).
     """
     peak = 2.0 * pi / period
     fine = np.geomspace(0.3 * peak, 30.0 * peak, 4000)
@@ -176,20 +169,13 @@ def full_sea_period(height: float) -> float:
 
 
 def spectrum_of(kind: str, height: float, period: float | None, gamma: float = 3.3) -> SeaState:
-    """Return the sea state of a named spectrum.
+    """Return the sea state of a named spectrum, from `SPECTRA`.
 
-    Parameters
-    ----------
-    kind : name of the spectrum, from `SPECTRA`
-    height, period : Hs [m] and Tp [s]; for spectra in `OF_HEIGHT`, a period of None selects the
-        period that follows from the height
-    gamma : peakedness of "jonswap"
+    `height` is Hs [m] and `period` Tp [s]; without a period, Tp follows from Hs. `gamma` is the
+    peakedness of "jonswap".
 
-    Raises
-    ------
-    UsageError
-        The waves are higher, longer or steeper than in any real sea, or a period is given although
-        the period follows from the height.
+    Raise UsageError if the waves are higher, longer, shorter or steeper than the limits, or if
+    "ochi-hubble" has a period.
     """
     if kind == "ochi-hubble":
         if period is not None:
@@ -224,8 +210,8 @@ def _impossible(height: float, period: float) -> str | None:
 def doubted(sea: SeaState) -> str | None:
     """Return a remark if a sea is steeper than measured seas, else None.
 
-    The steepness is the ratio of Hs to the wavelength at Tp. The limit on the steepness is 1/15 up
-    to a Tp of 8 s, and falls to 1/25 at 15 s (DNV-RP-C205, steepness criteria).
+    The maximum ratio of Hs to the wavelength at Tp is 1/15 up to 8 s, and 1/25 at 15 s
+    (DNV-RP-C205, steepness criteria).
     """
     height, period = sea.significant_height, sea.peak_period
     steepness = 2.0 * pi * height / (9.80665 * period**2)
@@ -239,11 +225,10 @@ def doubted(sea: SeaState) -> str | None:
 
 
 def with_swell(sea: SeaState, height: float, period: float) -> SeaState:
-    """Add a swell of Hs [m] and Tp [s], in the same direction, to a sea.
+    """Add a swell with Hs [m] and Tp [s], in the same direction, to a sea.
 
-    The swell has the narrow spectrum of Ochi and Hubble with λ = 3, and the variances are added.
-    Raise UsageError if the swell is higher, longer or steeper than any real swell, or if its period
-    is not longer than the peak period of the sea.
+    The swell has the spectrum of Ochi and Hubble with λ = 3. Raise UsageError if the swell is
+    impossible, or if the period does not exceed that of the sea.
     """
     spectrum_of("bretschneider", height, period, 1.0)
     if period <= sea.peak_period:
@@ -267,8 +252,7 @@ def _together(first: Density, second: Density, omega: Floats) -> Floats:
 def _most_probable(height: float) -> SeaState:
     """Return the most probable sea state of Ochi and Hubble (1976) for a significant height [m].
 
-    The sea state consists of a swell and a wind sea. The constants are from secondary sources, not
-    from the original article.
+    The sea state has a swell and a wind sea. The constants are from secondary sources.
     """
     if height > HIGHEST:
         raise UsageError(
@@ -285,9 +269,8 @@ def _most_probable(height: float) -> SeaState:
 def measured_spectrum(path: Path) -> SeaState:
     """Read a measured spectrum from CSV, ``frequency[Hz],density[m^2/Hz]``, or from NetCDF.
 
-    A NetCDF file has the form of NDBC or WAVEWATCH III, and a single position. From a file with
-    several times, the highest sea is used. Raise InputError if the file is not a spectrum, or if
-    the frequencies do not increase.
+    NetCDF files of NDBC and WAVEWATCH III are supported. Of several times, the highest sea is used.
+    Raise InputError if the spectrum is invalid.
     """
     if holds_arrays(path):
         return _sea_of(path, *_spectral_arrays(path))
@@ -375,8 +358,8 @@ def _spectral_arrays(path: Path) -> tuple[Floats, Floats]:
 def scatter_states(path: Path, kind: str, gamma: float = 3.3) -> list[SeaState]:
     """Return the sea states of a scatter table, each with its share of the time.
 
-    The columns are ``significant_wave_height[m],peak_period[s],share``; the column `share` may also
-    hold counts. Raise InputError if the table has mistakes; the error lists all of them.
+    The columns are ``significant_wave_height[m],peak_period[s],share``; shares may be counts. Raise
+    InputError if the table has mistakes, and UsageError for "ochi-hubble".
     """
     rows = _numbered_rows(path, ("significant_wave_height[m]", "peak_period[s]", "share"))
     if kind == "ochi-hubble":

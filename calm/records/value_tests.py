@@ -1,7 +1,6 @@
-"""General tests of measured values, which yield sentences about suspicious values.
+"""Tests that report suspicious measured values as sentences.
 
-The tests use values alone and ignore free text. They do not exclude or reject values, but leave
-this decision to the user.
+The tests neither exclude nor reject values.
 """
 
 from __future__ import annotations
@@ -49,17 +48,16 @@ _FEET = 0.3048
 
 @dataclass(frozen=True)
 class CurrentValues:
-    """Currents of a record, as input to the tests for doubtful values.
+    """Currents of a record: n profiles with k levels.
 
     Attributes
     ----------
-    depth : (k,) or (n, k) depths of the levels [m]; NaN if unknown
+    depth : (k,) or (n, k) depths [m]; NaN if unknown
     u, v : (n, k) eastward and northward components [m/s]; NaN in gaps
     times : (n,) increasing times; None for a single profile
     water_depth : water depth [m]; inf if unknown
-    unit : declared unit of speed
-    factor : factor from this unit to m/s
-    good : (n, k) share of good pings; None if unknown
+    unit, factor : declared unit of speed, and the factor to m/s
+    good : (n, k) share of good pings, if known
     """
 
     depth: Floats
@@ -101,13 +99,10 @@ def current_doubts(found: CurrentValues) -> Iterator[str]:
 
 
 def level_doubts(depth: Floats, known: NDArray[np.bool_], water_depth: float) -> Iterator[str]:
-    """Yield doubts about levels below the seabed, levels without values, and depths without levels.
+    """Report levels below the seabed, levels without values, and depth ranges without levels.
 
-    Parameters
-    ----------
-    depth : (k,) or (n, k) depths of the levels [m]
-    known : (n, k) mask of the values that are present
-    water_depth : water depth [m]; inf if unknown
+    Depths [m] are (k,) or (n, k); `known` (n, k) masks the values that are present. An unknown
+    water depth is inf.
     """
     there, levels = known.any(axis=0), _levels(depth, known)
     allowed = max(UNCOVERED * water_depth, FEW)
@@ -148,11 +143,8 @@ def _median(values: Floats) -> float:
 def left_out(top: float, bottom: float, water_depth: float, what: str = "current") -> str:
     """Return a message if a profile does not cover the whole water column, else "".
 
-    Parameters
-    ----------
-    top, bottom : depths of the first and last level of the profile [m]
-    water_depth : water depth [m]; inf if unknown
-    what : quantity of the profile
+    `top` and `bottom` are the depths of the first and the last level [m]. An unknown water depth is
+    inf. `what` is the quantity.
     """
     allowed = max(UNCOVERED * water_depth, FEW)
     gaps = [f"above {say('depth', top)}"] if top > allowed else []
@@ -167,12 +159,9 @@ def left_out(top: float, bottom: float, water_depth: float, what: str = "current
 
 
 def speed_doubts(speed: Floats, unit: str = "m/s", factor: float = 1.0) -> Iterator[str]:
-    """Yield a doubt if all speeds are so small that the declared unit is probably wrong.
+    """Report speeds that are all so small that the declared unit is probably wrong.
 
-    Parameters
-    ----------
-    speed : (n,) speeds [m/s]
-    unit, factor : declared unit, and the factor from this unit to m/s
+    Speeds (n,) are in m/s. `factor` is the factor from the declared unit to m/s.
     """
     strongest = float(speed.max(initial=0.0))
     if speed.size < _VARIED or not 0.0 < strongest < WEAK:
@@ -189,7 +178,7 @@ def speed_doubts(speed: Floats, unit: str = "m/s", factor: float = 1.0) -> Itera
 
 
 def sector_doubts(u: Floats, v: Floats) -> Iterator[str]:
-    """Yield a doubt if the directions of all currents are in a narrow sector that begins at north.
+    """Report currents whose directions are all in a narrow sector that begins at north.
 
     Parameters
     ----------
@@ -252,12 +241,10 @@ _ALIKE, _UNLIKE = 0.8, 0.5
 
 
 def _turned_levels(depth: Floats, current: NDArray[np.complex128]) -> Iterator[str]:
-    """Yield a doubt about levels whose currents match both neighbours only if rotated or mirrored.
+    """Report levels whose currents match both neighbours only after a rotation or a reflection.
 
-    Parameters
-    ----------
-    depth : (k,) increasing depths [m]
-    current : (n, k) eastward (real) and northward (imaginary) component [m/s]; NaN in gaps
+    Depths (k,) [m] increase. Currents (n, k) [m/s] have an eastward real and a northward imaginary
+    part.
     """
     turned = []
     for i in range(1, len(depth) - 1):
@@ -289,13 +276,13 @@ def _turned_levels(depth: Floats, current: NDArray[np.complex128]) -> Iterator[s
 
 
 def series_doubts(values: Floats, times: Times, names: Sequence[str] = ("",)) -> Iterator[str]:
-    """Yield doubts about times, gaps, and constant or repeated values of time series.
+    """Report doubtful times, gaps, and constant or repeated values of time series.
 
     Parameters
     ----------
     values : (n, k, c) values of c components in k series; NaN in gaps
     times : (n,) increasing times
-    names : (k,) place of each series for the messages, such as " at 20 m"; "" for a single series
+    names : (k,) text for each series in messages, such as " at 20 m"
     """
     yield from _years(times)
     again = int((times[1:] == times[:-1]).sum())
@@ -318,7 +305,7 @@ FAR_APART = np.timedelta64(12, "h")
 
 
 def step_doubts(times: Times) -> Iterator[str]:
-    """Yield a doubt if the time between profiles is too long to resolve tides and peaks."""
+    """Report a time between profiles that is too long to resolve tides and peaks."""
     if len(times) > 1 and (step := np.median(np.diff(np.sort(times)))) >= FAR_APART:
         yield (
             f"the {len(times)} profiles are {step / np.timedelta64(1, 'h'):.4g} h apart, so tides "
@@ -352,12 +339,17 @@ _FRACTION = 0.05  # most salinities lie below this if they are mass fractions
 
 
 def impossible_values(name: str, values: Floats) -> tuple[NDArray[np.bool_], str, bool]:
-    """Find impossible values; return their mask, a message, and whether most values are impossible.
+    """Find values that are impossible for sea water.
 
     Parameters
     ----------
     name : key of `WATER`
     values : values in the unit of the quantity; NaN in gaps
+
+    Returns
+    -------
+    tuple
+        Mask of the impossible values, a message, and whether most values are impossible.
     """
     limits, known = WATER[name], values[np.isfinite(values)]
     wrong = (values < limits.least) | (values > limits.greatest)
@@ -382,14 +374,10 @@ def impossible_values(name: str, values: Floats) -> tuple[NDArray[np.bool_], str
 
 
 def exchanged_pair(values: Floats) -> tuple[int, int] | None:
-    """Find two levels whose exchange makes a profile monotonic.
+    """Find the only two levels whose exchange makes a profile monotonic.
 
-    Return None if the profile is already monotonic, if no pair of levels has this effect, or if
-    several pairs have this effect.
-
-    Parameters
-    ----------
-    values : mean value at each level, from top to bottom; at least four levels
+    Return None if the profile is already monotonic, or if no pair or several pairs fit. At least
+    four values are needed, and no NaN.
     """
     if len(values) < 4 or not np.isfinite(values).all():
         return None
@@ -497,7 +485,7 @@ def _interleaved(values: Floats) -> Iterator[str]:
 
 
 def _repeated(values: Floats, times: Times) -> Iterator[str]:
-    """Yield a doubt about the longest run of readings that occurs twice with equal digits."""
+    """Report the longest run of readings that occurs twice with equal digits."""
     count = len(values) - _STRETCH + 1
     if count <= _STRETCH:
         return

@@ -70,11 +70,9 @@ class Velocity:
     ----------
     names : eastward and northward velocity, or speed and direction
     up : upward velocity; None if missing
-    turn : angle to add to the direction variable to get the direction of flow [degrees]; None if
-        `names` are components
-    magnetic : whether the file states that directions are relative to magnetic north
-    true : whether the file states that directions are relative to true north
-    notes : remarks on assumptions
+    turn : angle to add to the direction variable for the direction of flow [degrees]; None for
+        components
+    magnetic, true : whether the file states that directions refer to magnetic or to true north
     """
 
     names: tuple[str, str]
@@ -105,12 +103,9 @@ class Velocity:
 def find_velocity(dataset: xr.Dataset, *, regular: bool) -> Velocity:
     """Find the velocity variables of a dataset.
 
-    Raise UnreadableError if there is no current, if there are several currents, or if the
-    components are not eastward and northward.
-
-    Parameters
-    ----------
-    regular : whether the grid has axes of latitude and longitude, so that x is east and y is north
+    If `regular`, the grid has axes of latitude and longitude, so that x is east and y is north.
+    Raise UnreadableError unless there is exactly one current, with eastward and northward
+    components.
     """
     reason = attributes.other_frame(dataset.attrs) or attributes.moving_platform(dataset)
     if reason is not None:
@@ -215,10 +210,9 @@ def _checked(dataset: xr.Dataset, name: str) -> str:
 
 
 def layers_of(dataset: xr.Dataset) -> set[str]:
-    """Return the names of coordinates that describe layers, and the names of their dimensions.
+    """Return the names of layer coordinates, and the names of their dimensions.
 
-    A coordinate that describes layers has the attribute `bounds`. A mean over a layer is accepted
-    as the value of this layer.
+    A layer coordinate has the attribute `bounds`. A mean over a layer counts as a value.
     """
     bounded = [name for name, one in dataset.variables.items() if "bounds" in one.attrs]
     return {str(each) for name in bounded for each in (name, *dataset[name].dims)}
@@ -253,10 +247,9 @@ _DIRECTIONS = "dir"
 
 
 def with_components(dataset: xr.Dataset) -> xr.Dataset:
-    """Return the dataset with a velocity `vel (dir, ...)` split into its components.
+    """Return the dataset with a velocity `vel (dir, ...)` split into components.
 
-    The components are called ``vel[E]``, ``vel[N]`` and so on, and have the standard names of
-    eastward, northward and upward velocity. A dataset without such a variable is returned
+    The components have names such as ``vel[E]``, and CF standard names. Any other dataset is
     unchanged. Raise UnreadableError if the components are along beams or instrument axes.
     """
     vectors = [name for name in _NAMES if name in dataset.data_vars]
@@ -357,9 +350,8 @@ _GOOD_NAMES = re.compile(r"(?i)(perg|pg|pgd|percent_?good|prcnt_gd|pct_good)_?[1
 def good_variables(dataset: xr.Dataset, name: str) -> list[xr.DataArray]:
     """Return the variables whose sum is the share of good pings for a velocity.
 
-    If a variable has one value per beam, the values of the first and the fourth beam are returned.
-    In earth coordinates, the first value is the share of three-beam solutions, and the fourth value
-    is the share of four-beam solutions.
+    Of four beams, only the first and fourth values are returned. In earth coordinates, the first
+    value counts three-beam and the fourth four-beam solutions.
     """
     dims = set(dataset[name].dims)
     there = [

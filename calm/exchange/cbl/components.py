@@ -28,8 +28,8 @@ _SLIGHT = 1e-9
 class ComponentMaker:
     """Converter of the buoys, anchors, connectors and materials of a problem file to components.
 
-    `density` [kg/m³] and `gravity` [m/s²] are the values in the problem file. Keys that CALM does
-    not support are added to `dropped`.
+    `density` [kg/m³] and `gravity` [m/s²] are from the problem file. Unsupported keys are added to
+    `dropped`.
     """
 
     density: float
@@ -43,10 +43,8 @@ class ComponentMaker:
 
         Parameters
         ----------
-        definition : definition of the material
         length : length of the segment [m]
-        depth : depth at which to evaluate a drag that depends on depth [m]
-        speed : speed at which to evaluate a drag that depends on speed [m/s]
+        depth, speed : depth [m] and speed [m/s] at which a variable drag is evaluated
         """
         values, name = definition.values, definition.name
         across, inside = values.number("d", "diam"), values.number("id")
@@ -125,11 +123,7 @@ class ComponentMaker:
     ) -> ImportedComponent:
         """Convert an anchor; the component has no weight if the file gives none.
 
-        Parameters
-        ----------
-        definition : definition of the anchor; None if the file has none
-        name : name in the layout
-        friction : friction coefficient in the layout; 0 if unspecified
+        `name` and `friction` are from the layout. A missing friction coefficient is 0.
         """
         values = definition.values if definition else KeyValues()
         figures: dict[str, FigureOrWord] = {}
@@ -149,10 +143,9 @@ class ComponentMaker:
         return component
 
     def buoy(self, definition: CableDefinition, *, afloat: bool) -> ImportedComponent:
-        """Convert a buoy: the float at the upper end of a mooring, or a towed body.
+        """Convert a buoy: the float of a mooring, or a towed body.
 
-        A submerged buoy becomes a point, as in WHOI Cable. A buoy at the surface gets the hull that
-        the file describes.
+        A submerged buoy becomes a point, as in WHOI Cable; a buoy at the surface has a hull.
         """
         values, name = definition.values, definition.name
         shape = values["type"].text.lower() if "type" in values else "sphere"
@@ -195,10 +188,9 @@ class ComponentMaker:
         return component
 
     def _at_reference(self, wet: float, mass: float) -> tuple[float, float]:
-        """Convert a weight in the file's water to reference water; return the weight and the mass.
+        """Convert a weight from the file's water to reference water; also return the mass.
 
-        The displaced volume follows from weight and mass, so that the weight in the file's water is
-        unchanged. If the mass is impossible, the mass is 0 and the weight is not converted.
+        If the mass is impossible, the weight is unchanged and the returned mass is 0.
         """
         if mass * KILOGRAM_FORCE < wet or mass <= 0.0:
             return wet, 0.0

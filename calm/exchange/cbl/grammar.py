@@ -53,8 +53,8 @@ class KeyValue:
     def at(self, depth: float) -> float:
         """Evaluate the formula or table at a depth.
 
-        If the table has speeds or strains instead of depths, `depth` is a speed or a strain. A
-        table is interpolated linearly, and extrapolated beyond its ends.
+        In a table of speeds or strains, `depth` is a speed or a strain. A table is interpolated
+        linearly, and extrapolated beyond the ends.
         """
         if not self.rows:
             return self.number(H=depth, h=depth, t=0.0)
@@ -143,12 +143,8 @@ CableItems = list[CableTerminal | CableSegment | CableBranch]
 class CableProblem:
     """Contents of a problem file.
 
-    Attributes
-    ----------
-    options : options of the import
-    description, environment, analysis : values by key in the sections of these names
-    buoys, anchors, connectors, materials : definitions by name
-    layout : terminals, segments and branches, in file order
+    `description`, `environment` and `analysis` are the sections of these names, by key. Buoys,
+    anchors, connectors and materials are by name. `layout` is in file order.
     """
 
     path: Path

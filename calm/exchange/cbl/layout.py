@@ -27,13 +27,8 @@ _End = grammar.CableTerminal | str
 class CableLayout:
     """Converter of the layout in a problem file to pieces, or to legs of a net.
 
-    Attributes
-    ----------
-    problem : contents of the problem file
-    makers : converter of components
-    design : design to which pieces and legs are added; drag that depends on depth or speed is
-        evaluated in the water of this design
-    nodes : number of nodes of the net that exist so far
+    Pieces and legs are added to `design`, whose water determines variable drag. `nodes` counts the
+    nodes of the net so far.
     """
 
     problem: grammar.CableProblem
@@ -70,8 +65,8 @@ class CableLayout:
     def lay_tow(self) -> None:
         """Convert the line of a tow, from the ship down.
 
-        A ship at rest in a current is converted to a moving ship. The current at the surface is
-        then subtracted from the current at all depths.
+        A ship at rest in a current becomes a moving ship. The surface current is then subtracted
+        from the current at all depths.
         """
         items = self._pieces_of(self.problem.segments)
         body, ship = self.problem.terminals

@@ -1,9 +1,4 @@
-"""Resolve comments, macros, conditions and included files of a problem file.
-
-Existing libraries for C preprocessing are not used. They do not limit the expansion of macros
-within their arguments, they split numbers such as `6e3` if `e3` is a macro, and they accept a
-comment without an end.
-"""
+"""Resolve comments, macros, conditions and included files of a problem file."""
 
 import os
 import re
@@ -33,6 +28,8 @@ class _Macro:
     parameters: tuple[str, ...] | None = None
 
 
+# C preprocessor libraries do not limit macro expansion, split `6e3` if `e3` is a macro, and accept
+# a comment without an end
 @dataclass
 class Preprocessor:
     """Preprocessor for problem files, which works like the C preprocessor."""
@@ -49,10 +46,10 @@ class Preprocessor:
         Raises
         ------
         InputError
-            A file cannot be read or may not be included, a directive is invalid, or the expansion
-            of macros does not end.
+            A file is unreadable or forbidden, a directive is invalid, or a macro expands without
+            end.
         UsageError
-            A macro defined by the user has an invalid name.
+            A macro of the user has an invalid name.
         """
         for name, value in self.options.defines.items():
             if not _NAME.fullmatch(name):

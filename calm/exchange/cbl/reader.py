@@ -268,9 +268,8 @@ def _gridded_current(
 ) -> _Grid | None:
     """Read a current file; return None if the file does not exist.
 
-    The file begins with the step, start and count for each of time, depth, x and y. The speeds in
-    x, y and z follow, with depth varying fastest, then x, then y, then time. Remarks about unused
-    currents are added to `dropped`.
+    Step, start and count of time, depth, x and y come first, then speeds in x, y and z. Depth
+    varies fastest, then x, y and time.
     """
     folder = problem.path.parent
     path, outside = folder / value.text, problem.options.allow_include

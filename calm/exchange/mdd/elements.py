@@ -39,9 +39,8 @@ def piece_of(element: MddElement) -> model.ImportedPiece:
 def rigid(element: MddElement) -> model.ImportedComponent:
     """Convert a rigid or clamped element to a component.
 
-    Mooring Design & Dynamics treats an element with a diameter as a sphere of that diameter,
-    whatever the length of the element. An element that has only a width is a cylinder. The Cd of a
-    cylinder applies to flow normal to the axis, and the end faces have no drag.
+    As in Mooring Design & Dynamics, an element with a diameter is a sphere of any length. An
+    element with only a width is a cylinder without drag on the end faces.
     """
     lift = element.lift * KILOGRAM_FORCE
     role = role_of(element.name, lift, fastener=element.is_fastener)
@@ -74,8 +73,8 @@ def rigid(element: MddElement) -> model.ImportedComponent:
 def rides_by_buoyancy(component: model.ImportedComponent) -> None:
     """Give a surface float a hull whose draft and drag are proportional to the buoyancy in use.
 
-    Mooring Design & Dynamics treats floats in this way. The hull displaces only as much water as
-    the net buoyancy requires.
+    The hull, as in Mooring Design & Dynamics, displaces only as much water as the net buoyancy
+    requires.
     """
     lift, height = component.number("buoyancy"), component.number("length")
     if component.kind not in ("sphere", "cylinder", "body") or lift <= 0.0:
@@ -130,7 +129,7 @@ def _flexible(element: MddElement) -> model.ImportedComponent:
 
 
 def anchor_of(element: MddElement) -> model.ImportedComponent:
-    """Convert the lowest element to an anchor; its weight in the file may have either sign."""
+    """Convert the lowest element to an anchor; the weight in the file may have either sign."""
     figures: dict[str, model.FigureOrWord] = {
         "weight": abs(element.lift) * KILOGRAM_FORCE,
         "length": element.length,
@@ -140,17 +139,17 @@ def anchor_of(element: MddElement) -> model.ImportedComponent:
 
 @dataclass(frozen=True)
 class MddElement:
-    """An element of the line: a column of the matrix ``H``, with its values from other matrices.
+    """An element of the line: a column of the matrix ``H``, with values from other matrices.
+
+    Values of a line (`is_line`: wire, rope or chain) are per metre. Fasteners are shackles, links
+    and swivels.
 
     Attributes
     ----------
-    length, width, diameter : sizes [m]; a sphere has a diameter, other elements have a width
-    is_line : whether the element is a wire, rope or chain, whose values are per metre
-    is_fastener : whether the element is a shackle, link or swivel
-    lift : net buoyancy [kg], or per metre [kg/m] if the element is a line
-    mass : mass in air [kg]; None if the file has none
-    modulus : modulus of elasticity of a line [Pa]; None if unknown, inf if the line does not
-        stretch
+    length, width, diameter : sizes [m]; only a sphere has a diameter
+    lift : net buoyancy [kg or kg/m]
+    mass : mass in air [kg]; None if unknown
+    modulus : modulus of elasticity of a line [Pa]; None if unknown, inf if inextensible
     number : number of the column, from 1
     density : density of the water to which `lift` applies [kg/m³]
     """
@@ -177,8 +176,7 @@ class MddElement:
 def read_elements(variables: MatVariables, suffix: str) -> tuple[list[MddElement], list[str]]:
     """Read the elements of a line in file order; also return messages about mistakes.
 
-    `suffix` is the end of the names of the matrices: ``t`` for a tow, ``CO`` for clamped elements,
-    and empty for a mooring.
+    `suffix` is the end of the matrix names: ``t`` for a tow, ``CO`` for clamped elements, or empty.
     """
     problems: list[str] = []
     size = _matrix(variables, f"H{suffix}", problems)

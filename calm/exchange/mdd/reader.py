@@ -153,10 +153,10 @@ def _attach_clamps(
 def _position_by_share(
     design: model.ImportedDesign, host: float, share: float
 ) -> tuple[int, float] | None:
-    """Return the index of a piece, and the distance of a clamp from its upper end [m].
+    """Return the index of a clamp's piece, and the distance from the piece's upper end [m].
 
-    `host` is the number of the element in the file. `share` is the position of the clamp as a
-    fraction of the length of the element, from its lower end.
+    `host` numbers the element, and `share` is the fraction of the element below the clamp. Return
+    None if `host` or `share` is out of range.
     """
     count, number = len(design.items), round(host) - 1
     if design.tow is not None:

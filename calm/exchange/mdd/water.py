@@ -15,19 +15,9 @@ def read_water(
 ) -> tuple[model.ImportedWater | None, CurrentRecord | None]:
     """Read the environment of a file, and the current record if the file has several profiles.
 
-    For a mooring, the variable `z` holds heights above the seabed, and the largest `z` is the water
-    depth. For a tow, `z` holds depths. The environment has the current of the first profile.
-
-    Parameters
-    ----------
-    variables : variables of the file
-    towed : whether the file is a tow
-    guessed : list to which guesses about times and density are added
-
-    Raises
-    ------
-    ValueError
-        The variables have different sizes.
+    The variable `z` holds heights above the seabed up to the surface, or depths if `towed`. The
+    environment has the first current profile. Raise ValueError if `z` is negative or incomplete, or
+    if variables have gaps or different sizes.
     """
     levels = variables.reals("z").ravel()
     if not np.any(levels > 0.0):

@@ -119,8 +119,8 @@ def _size(part: ExportedPart, lost: list[str]) -> tuple[float, float, float]:
 def _clamped(design: ExportedLine, lost: list[str]) -> dict[str, object]:
     """Return the variables for clamped parts, from the top down.
 
-    `Jobj` has the number of the host element of each clamp, `Pobj` the fraction of the host's
-    length below the clamp, and `ZCO` the height of the clamp [m].
+    `Jobj` is the number of the host element, `Pobj` the fraction of the element's length below the
+    clamp, and `ZCO` the height of the clamp [m].
     """
     rows, names, places = [], [], []
     count = len(design.parts)

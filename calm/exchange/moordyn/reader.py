@@ -50,9 +50,10 @@ _COLUMNS = {
 
 @dataclass(frozen=True)
 class _File:
-    """Points and line types by name, and lines; `at` has the lines that meet at each point.
+    """Contents of a MoorDyn file: points and line types by name, and lines.
 
-    `depth` [m] and `gravity` [m/s²] are values of the water. Pieces are added to `design`.
+    `at` has the lines that meet at each point, by point name. `depth` is the water depth [m].
+    Pieces are added to `design`.
     """
 
     points: dict[str, _Row]
@@ -108,7 +109,7 @@ class _File:
 
 
 def read_moordyn(path: Path) -> model.ImportedDesign:
-    """Read a MoorDyn file with a single line from an anchor up to a float, or with a net of legs.
+    """Read a MoorDyn file with one line from anchor to float, or with a net of legs.
 
     Raises
     ------

@@ -118,12 +118,7 @@ class _System:
 def write_moordyn(exported: ExportedDesign) -> Exported:
     """Convert a line or the legs of a net to a MoorDyn file, and the current to a second file.
 
-    Raises
-    ------
-    UsageError
-        The design is a tow.
-    NoEquilibrium
-        The mooring has no equilibrium, so the positions of its points are unknown.
+    Raise UsageError for a tow, and NoEquilibrium if the mooring has no equilibrium.
     """
     lines = exported.legs
     deepest = max(lines, key=lambda line: line.depth)
@@ -211,16 +206,16 @@ def _lay_rigid(system: _System, parts: list[ExportedPart], top: Coordinates) -> 
 
 
 def _lay_float(system: _System, design: ExportedLine, path: Floats) -> None:
-    """Add the uppermost piece: a point above a stiff length that represents the draft of the piece.
+    """Add the uppermost piece: a point above a stiff length for the draft of the piece.
 
-    This length has a share of the mass of the piece and is neutrally buoyant, because MoorDyn needs
-    very short time steps for a light length.
+    The length is neutrally buoyant and has a share of the mass of the piece.
     """
     part = design.parts[0]
     top, bottom = place_along(path, 0.0), place_along(path, 1.0)
     below = bottom[2] / (bottom[2] - top[2]) if top[2] < 0.0 else 1.0
     length = part.length * below
     if length > 0.0:
+        # MoorDyn needs very short time steps for a light length
         own = PartLoad(system.density, mass=_OWN * part.likely_mass).per_metre(length)
         figures = system.figures(own, _rigid_stiffness(length))
         system.line("float", figures, length, place_along(path, 1.0 - below))

@@ -98,17 +98,9 @@ class ColumnUnit:
 
 
 def unit_called(text: str, what: str) -> ColumnUnit | None:
-    """Parse a unit, ignoring words such as *wet*; return None if the text contains no unit.
+    """Parse a unit, ignoring words such as *wet*; return None if the text has no unit.
 
-    Parameters
-    ----------
-    text : text in brackets, in a row of units, or after the number in a cell
-    what : quantity in the column
-
-    Raises
-    ------
-    ValueError
-        The unit does not fit the quantity.
+    `what` is the quantity in the column. Raise ValueError if the unit does not fit this quantity.
     """
     plain = " ".join(text.replace("_", " ").split())
     while plain:
@@ -129,7 +121,7 @@ def unit_called(text: str, what: str) -> ColumnUnit | None:
 
 
 def unit_of_heading(heading: str, what: str) -> ColumnUnit | None:
-    """Find the unit in a heading, in brackets or as the last word; return None if there is none.
+    """Find the unit in a heading, in brackets or at the end; return None if there is none.
 
     Raises
     ------
@@ -192,9 +184,9 @@ def _factor(text: str, dimension: str) -> float | None:
 
 
 class CellNumber(NamedTuple):
-    """Number in a cell, the text after the number, and a message if the cell cannot be read.
+    """Number in a cell, text after the number, and a message if the cell cannot be read.
 
-    `value` is None if the cell has no number. `tidied` is true if the cell also has other text.
+    `value` is None without a number. `tidied` is true if the cell also has other text.
     """
 
     value: float | None
@@ -263,15 +255,10 @@ def _either(digits: str) -> str:
 
 
 def decimal_sign(cells: Iterable[tuple[str, str]]) -> tuple[str, str]:
-    """Find the decimal symbol of a file, and return a remark on the meaning of commas.
+    """Find the decimal symbol of a file; also return a remark on commas, empty without commas.
 
-    The remark is empty if the file has no commas. `cells` yields the position and the text of each
-    cell that should have a number.
-
-    Raises
-    ------
-    ValueError
-        Both the point and the comma are decimal symbols, or numbers such as `1,250` are ambiguous.
+    `cells` yields the position and text of each cell that should have a number. Raise ValueError if
+    the numbers are contradictory, or ambiguous like `1,250`.
     """
     seen: dict[str, str] = {}
     doubtful: dict[str, tuple[str, str]] = {}  # position, and digits
@@ -325,9 +312,9 @@ class ReadSheets(NamedTuple):
 
 
 def read_sheets(path: Path) -> ReadSheets:
-    """Read the rows of each sheet; lines that begin with # are comments.
+    """Read the rows of each sheet with cells; lines that begin with # are comments.
 
-    A sheet without cells is omitted. A text file has one sheet, whose name is empty.
+    A text file has one sheet, whose name is empty.
 
     Raises
     ------

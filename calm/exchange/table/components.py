@@ -91,8 +91,8 @@ def _check_lift(row: ListRow, kind: str, across: float, length: float) -> None:
 def _shape(row: ListRow) -> tuple[str, float]:
     """Choose kind and diameter [m] of a rigid piece from its size.
 
-    In a list with both widths and diameters, a piece with a diameter is a sphere. In other lists, a
-    float that is hardly longer than wide is a sphere.
+    In a list with widths and diameters, a piece with a diameter is a sphere. In other lists, a
+    float hardly longer than wide is a sphere.
     """
     width, diameter, length, lift = map(row.figure, ("width", "diameter", "length", "buoyancy"))
     if {"width", "diameter"} <= row.figures.keys():

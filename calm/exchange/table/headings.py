@@ -87,18 +87,16 @@ _MEASURES = {"length", "buoyancy", "weight", "mass"}
 
 @dataclass(frozen=True)
 class ListColumn:
-    """A column of a list: its index, its heading, and its conversion factor to SI.
+    """A column of a list: index, heading, and conversion factor to SI.
 
     Attributes
     ----------
     by_mass : whether forces are in kilograms
     per_metre : whether the values of lines are per metre
     known : whether the heading has a unit
-    whole : whether the heading marks values as totals, for all pieces in a row or for the whole
-        length of a line
-    wrong : mistake in the heading, as a message; empty if there is none
-    twin : second column for the same quantity; one of the two columns is per metre, the other is
-        per piece
+    whole : whether values are totals, for all pieces in a row or for the whole line
+    wrong : message about a mistake in the heading, or empty
+    twin : second column for the same quantity; one column is per metre, the other per piece
     """
 
     index: int
@@ -154,10 +152,10 @@ class ListHeadings:
 
 
 def headings_of(rows: SheetRows, given: Mapping[str, str]) -> ListHeadings | None:
-    """Find the headings of a sheet.
+    """Find the headings of a sheet, or return None.
 
-    Return None if no row has a heading for the name together with a heading for a length, a mass or
-    a force. Columns in `given` take precedence over columns recognised by their headings.
+    The row of headings needs a name and a length, a mass or a force. Columns in `given` take
+    precedence over recognised columns.
     """
     best, highest = None, (0, 0)
     for i in range(min(len(rows), _SEARCHED)):
@@ -181,16 +179,8 @@ def headings_of(rows: SheetRows, given: Mapping[str, str]) -> ListHeadings | Non
 def check_given(sheets: Mapping[str, SheetRows], given: Mapping[str, str], path: Path) -> None:
     """Check that `--columns` names known columns, and headings that occur in the list.
 
-    Parameters
-    ----------
-    sheets : rows of each sheet, by name of the sheet
-    given : heading given by the user for each column, by name of the column in CALM
-    path : path of the list
-
-    Raises
-    ------
-    InputError
-        A name or a heading is unknown.
+    `given` has the headings by column name in CALM. Raise InputError if a name or a heading is
+    unknown.
     """
     for what in (each for each in given if each not in COLUMNS):
         raise refused(

@@ -38,12 +38,8 @@ Library = Mapping[str, ListRow]
 def read_library(path: Path) -> Library:
     """Read elements from `mdcodes.mat` of Mooring Design & Dynamics, or from a table or workbook.
 
-    If several elements have the same name, the first element is used.
-
-    Raises
-    ------
-    InputError
-        The file cannot be read, or contains no elements.
+    Of elements with the same name, the first is used. Raise InputError if the file is unreadable or
+    has no elements.
     """
     content = read_content(path, largest=200_000_000)
     elements = _of_matrices(path) if is_mat(content) else _of_sheets(path)
@@ -75,8 +71,7 @@ def complete_rows(rows: Iterable[ListRow], library: Library, source: str) -> Non
 
     Parameters
     ----------
-    rows : rows of the list, which are changed in place
-    library : the library
+    rows : rows of the list, changed in place
     source : name of the library, for hints to the user
     """
     for row in rows:

@@ -111,10 +111,10 @@ def _sheet_with_headings(
     sheets: Mapping[str, SheetRows], hidden: Mapping[str, str], columns: Mapping[str, str],
     path: Path, remarks: list[model.Remark],
 ) -> tuple[str, SheetRows, ListHeadings] | None:  # fmt: skip
-    """Return name, cells and headings of the only sheet with headings, or None if there is none.
+    """Return name, cells and headings of the only sheet with headings, or None.
 
-    A hidden sheet is used only if no visible sheet has headings. Remarks about hidden sheets and
-    parts are added to `remarks`.
+    A hidden sheet is used only if no visible sheet has headings. Raise InputError if several sheets
+    have headings.
     """
     found = [
         (name, cells, headings)

@@ -38,12 +38,8 @@ _FITTING = 1.0  # m: a shorter connector is a fitting, not a rope
 class ListRow:
     """A row of a list: name, values in SI units, count, and guesses.
 
-    Attributes
-    ----------
-    metre : names of the values that are per metre
-    line : whether the row is a cable or chain; if None, role, kind and name decide
-    hint : advice on missing values
-    problems : messages about mistakes
+    `metre` has the names of the values that are per metre. `line` is whether the row is a cable or
+    chain; if None, role, kind and name decide.
     """
 
     place: int
@@ -107,11 +103,7 @@ def rows_of(
 ) -> list[ListRow]:
     """Read the rows below the headings; rows with totals or without values are added to `dropped`.
 
-    Parameters
-    ----------
-    guessed : list to which guesses are added
-    bare : function that returns whether a row that contains only a name is a piece, because a
-        library has the values
+    `bare` decides whether a row with only a name is a piece, because a library has the values.
     """
     rows: list[ListRow] = []
     known = headings.columns
