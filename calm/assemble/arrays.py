@@ -45,13 +45,13 @@ def assemble_line(
 ) -> Line:
     """Build the arrays of the line above the anchor, or of a whole towed line, in piece order.
 
-    A piece whose length is fitted has length 0 until the length is known.
+    A piece with unknown fitted length has length 0.
 
     Parameters
     ----------
     pieces : pieces from top to bottom; an anchor is the last piece
     solver : laws of drag, friction and strumming; the defaults if None
-    gravity : acceleration of gravity, used to convert masses to weights [m/s²]
+    gravity : acceleration of gravity, which converts masses to weights [m/s²]
     """
     # the environments of a mooring share its lines, with all results cached on the lines
     given = tuple(pieces), solver or Solver(), gravity
@@ -131,10 +131,7 @@ def _elongation(component: files.Component) -> ElongationCurve | None:
 
 
 def with_axial_clamps(line: Line, pieces: Sequence[files.Piece]) -> Line:
-    """Return a copy of a line in which the drag of the clamps is the drag in axial flow.
-
-    The flow is axial during descent and ascent.
-    """
+    """Return a copy of a line with the drag of clamps in axial flow, as in descent and ascent."""
     clamps = [clamp.component for piece in pieces for clamp in piece.clamps]
     axial = [drag_of(each)[2] for each in clamps]
     curves = tuple(
@@ -155,12 +152,11 @@ def vibration_law(solver: Solver) -> BourgetMarichal | None:
 def assemble_floating(
     pieces: Sequence[files.Piece], environment: Environment, water: Water
 ) -> Floating | None:
-    """Return the properties of the first float when it is at the surface.
+    """Return the surface properties of the first float.
 
-    The key `hull` of the component specifies the hull. Without this key, a sphere has a spherical
-    hull, and a cylinder has a cylindrical hull. If the volume is unknown, the draft is unknown too,
-    and only `k_surface` has an effect. Return None if there is no float, or if both the draft and
-    the surface drag of the float are unknown.
+    Return None if there is no float, or if draft and surface drag of the float are unknown. Without
+    the key `hull`, a sphere has a spherical hull, and a cylinder has a cylindrical hull. Without
+    volume, the draft is unknown.
     """
     parts = (piece.component for piece in pieces)
     floats = (part for part in parts if isinstance(part, files.Rigid) and part.net_buoyancy > 0.0)

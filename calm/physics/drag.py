@@ -242,8 +242,8 @@ def drag_share(ax: float, ay: float, az: float, k: float, vx: float, vy: float, 
 def share_step(aa: float, av: float, vv: float, target: float, c: float) -> Vector:
     """Return three quantities for a Newton step in c towards c |A + c V| = target.
 
-    The quantities are c |A + c V| - target, |A + c V|, and |A + c V| times the derivative of c |A +
-    c V|. `aa`, `av` and `vv` are A·A, A·V and V·V.
+    The quantities are c |A + c V| - target, |A + c V|, and |A + c V| times the derivative of
+    c |A + c V|. `aa`, `av` and `vv` are A·A, A·V and V·V.
     """
     square = aa + c * (2.0 * av + c * vv)
     root = sqrt(square)
@@ -289,9 +289,10 @@ def few_steps_share(
 def axis_along(
     ax: float, ay: float, az: float, c: float, vx: float, vy: float, vz: float
 ) -> Vector:
-    """Return the unit axis opposite to the force A + c V, which points towards the fixed end.
+    """Return the unit axis of an element, opposite to the force A + c V.
 
-    If the force vanishes, the axis is parallel to the current, or points down in still water.
+    The axis points towards the fixed end. If the force vanishes, the axis is parallel to the
+    current, or points down in still water.
     """
     x, y, z = ax + c * vx, ay + c * vy, az + c * vz
     if x * x + y * y + z * z == 0.0:

@@ -1,10 +1,9 @@
 """Translation of the physics functions ("laws") to LLVM instructions.
 
 A law uses only numbers, named tuples, sequences of numbers or named tuples, and functions of
-`math`, so that all types follow from the arguments of the law. The operations are translated one by
-one, in the same order and with the same meaning as in Python; LLVM must not rearrange them.
-
-Named tuples are passed by their address, since no law changes one. Indices are not checked.
+`math`. All types follow from the arguments of the law. Operations keep their order and their
+meaning in Python. Indices are not checked. Named tuples are passed by address, since no law changes
+a named tuple.
 """
 
 import ast
@@ -143,10 +142,10 @@ class Program:
         return self.laws[law, kinds]
 
     def add_entry(self, symbol: str, law: Law, kinds: tuple[Any, ...], wanted: Any) -> None:
-        """Add a function that calls a law; the arguments and the result are in memory.
+        """Add a function that calls a law, with arguments and result in memory.
 
-        The first argument of the function is the address of the law's arguments. The second
-        argument is the address of the result. The result is converted to the kind `wanted`.
+        The function takes two addresses: the address of the law's arguments, and the address of the
+        result, which is converted to the kind `wanted`.
         """
         given = Held(Row(None, kinds), "%given")
         entry = Instructions(self)
@@ -190,8 +189,9 @@ RESULT = "return"
 class _Body(Instructions):
     """Translation of the body of a law.
 
-    `known` holds the kinds of the variables and of the result. If a later statement widens a kind,
-    for example from whole to real numbers, `widened` is true and the law is translated again.
+    `known` holds the kinds of the variables and of the result. `widened` is true if a later
+    statement widens a kind, for example from whole to real numbers. The law is then translated
+    again.
     """
 
     def __init__(
@@ -384,8 +384,8 @@ class _Body(Instructions):
     def finish(self, node: Any, ends: bool, over: str, end: str) -> bool:
         """Translate the `else` part of a loop, and begin the code after the loop.
 
-        `over` is the label that a loop without `break` reaches, and `ends` is whether a loop can
-        end in this way. Return whether the next statement can be reached.
+        `over` is the label at which the loop ends without `break`, if `ends` is true. Return
+        whether the next statement can be reached.
         """
         if ends:
             self._start(over)

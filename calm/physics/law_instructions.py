@@ -54,7 +54,7 @@ class ArrayView(NamedTuple):
 class Global(NamedTuple):
     """A function, class or module to which the source of a law refers.
 
-    If a law passes a function to another law, the other law is translated for this function.
+    If a law receives a function as an argument, the law is translated separately for each function.
     """
 
     value: Any

@@ -1,7 +1,7 @@
 """Kinds of the values of compiled laws, and their layout in memory.
 
 Every number takes eight bytes. A sequence is represented by the address of its first number and by
-its shape. A named tuple is a row of numbers, whether it is a value or an element of a sequence.
+its shape. A named tuple is a row of numbers.
 """
 
 import ctypes

@@ -73,7 +73,7 @@ class Bed(NamedTuple):
 def off_bed(bed: Bed, x: float, y: float, z: float) -> float:
     """Return the height of a point above the seabed plane.
 
-    x, y, z are relative to any point on the plane. For a force x, y, z, the result is its component
+    x, y, z are relative to any point on the plane. If x, y, z is a force, the result is the force
     normal to the plane times √(1 + tan² slope).
     """
     return z + bed.east * x + bed.north * y
@@ -304,8 +304,7 @@ class Line(_Arrays):
     flexible : (n,) True for a cable or chain, False for a rigid piece
     buoyancy : (n,) net buoyancy, positive up [N or N/m]
     volume : (n,) displaced volume [m³ or m³/m]; 0 if unknown
-    normal_drag, tangential_drag : (n,) Kn without strumming by `strumming`, and Kt [N/(m/s)², per
-        metre if flexible]
+    normal_drag, tangential_drag : (n,) Kn and Kt [N/(m/s)², per metre if flexible]
     directional : (n,) False if the drag is Kn|V|V for any direction of the flow
     compliance : (n,) compliance 1/EA [1/N]; 0 if the piece is inextensible
     thinning : (n,) exponent in the factor (1 + strain)**thinning on the drag per unstretched metre;
@@ -318,7 +317,7 @@ class Line(_Arrays):
     lift, clamp_lift : (n,), (m,) hydrodynamic lift at 1 m/s, positive up [N/(m/s)²]; default 0
     diameter : (n,) diameter of cables that may strum [m]; default 0
     friction : tangential drag law of cables and chains
-    strumming : strumming law of the cables, or None
+    strumming : strumming law of the cables, which increases `normal_drag`; or None
     towed : whether the free end is towed; rigid pieces at a towed end do not form one rigid body
     push_east, push_north : (n,) force of the wind on a piece [N]; default 0
     floating : surface properties of the first float; if None, a float that reaches the surface is

@@ -1,13 +1,12 @@
 """Integration (march) down a line from its free end, stage by stage, as functions to compile.
 
-A march starts at a given position of the free end, on which no force acts from above, and returns
-position and force at the other end. `calm.solve` searches for the start from which this end meets
-the anchor.
+A march starts at a given position of the free end, without force from above. A march returns
+position and force at the other end.
 
-A cable or chain is divided into straight segments. By default the march chooses them: each segment
-rotates by about the angle step, is short against the water depth, and ends at a level of the water
-profile. If segments are given, they keep their lengths, so that the end of the line is a smooth
-function of its start. A segment that crosses a level is split there.
+Cables and chains are divided into straight segments. By default the march chooses segments that
+rotate by about the angle step, are short against the water depth, and end at levels of the water
+profile. If segments are given, the segments keep their lengths, so that the end of the line is a
+smooth function of its start.
 """
 
 from collections.abc import MutableSequence
@@ -75,16 +74,15 @@ class MarchSettings(NamedTuple):
     ----------
     angle_step : largest rotation of a segment [rad]
     reach : largest length of a segment [m]
-    near : allowed error of the depth at which the water is sampled for a load [m]; 0 requires full
-        precision
+    near : allowed error of the depth at which the water is sampled [m]; 0 for full precision
     stages : number of stages to march
-    lands : whether the line may touch down. The touchdown is the point below the last buoyant piece
-        where the force normal to the seabed vanishes; the rest of the line lies on the seabed
+    lands : whether the line may lie on the seabed below a touchdown. At the touchdown, below the
+        last buoyant piece, the force normal to the seabed vanishes
     bed : the seabed
-    given : whether the segments are given; otherwise the march chooses them
-    exact : whether segments are split at every level of the water profile; otherwise they are split
-        only at levels with an appreciable effect
-    halves : whether each segment, or part of a segment, is integrated in two halves
+    given : whether the segments are given, instead of chosen by the march
+    exact : whether every level of the water profile splits segments, even without appreciable
+        effect
+    halves : whether each part of a segment is integrated in two halves
     recording : whether every node and element is recorded
     """
 
@@ -115,10 +113,9 @@ def pass_line(
 
     Parameters
     ----------
-    out : length of line above the surface at the free end [m]; 0 if no part is above the surface.
-        If `out` is not 0, the depth of the free end is computed from `out`
+    out : length of line above the surface [m], which replaces `depth`; 0 if the line is submerged
     cuts, counts : unstretched lengths of the segments [m], and number of segments in each cable;
-        these are input if the segments are given, otherwise output
+        input if the segments are given, otherwise output
     record : array to which nodes and elements are written
     left : array to which the results are written, with the indices `Z` to `FAILURE`
     """
@@ -187,12 +184,12 @@ def pass_cable(
     record: Record,
     nodes: int,
 ) -> tuple[State, float, int, int, int]:
-    """Integrate along cable number `place` of a line.
+    """Integrate along the cable with index `place` in the course.
 
     Returns
     -------
     The state at the end of the cable; the unstretched length above the touchdown [m], or -1 without
-    touchdown; the numbers of segments and of nodes so far; and the outcome.
+    touchdown; the total numbers of segments and nodes; and the outcome.
     """
     cable, knots, vibration = course.cables[place], course.knots, course.vibration
     if vibration.beat != 0.0:
@@ -284,8 +281,7 @@ def cut_evenly(
 ) -> int:
     """Choose equal segments for a length of cable on the seabed, which is not integrated.
 
-    Return the total number of segments so far. If the array `cuts` is full, further segments are
-    counted but not written.
+    Return the total number of segments, including those that no longer fit into `cuts`.
     """
     if length <= 0.0:
         return used

@@ -58,8 +58,7 @@ class Sea(NamedTuple):
     ----------
     levels : depths that bound the intervals [m], from -inf to inf
     intervals : water in each interval
-    bends : relative change of the slopes of current and density at each level [1/m], see
-        `find_bends`
+    bends : relative change of the slopes of current and density at each level [1/m]
     gravity : acceleration of gravity [m/s²]
     strata : kinematic viscosity in strata, from the top down; the first stratum begins at -inf
     """
@@ -119,10 +118,8 @@ def distance_to_bend(
 ) -> float:
     """Return the distance [m] along a path to the next point where the drag has a kink.
 
-    This point is usually at the next level. The drag is proportional to |V| V, and therefore also
-    has a kink at a depth where the flow almost vanishes. Such a depth is returned if it is reached
-    before the next level and within the length of a segment. A level nearer than `LEAST_PART` times
-    the segment length is skipped, unless a segment of the full length has to be split there.
+    The drag has a kink at a level, and at a depth where the flow almost vanishes. Kinks nearer than
+    `LEAST_PART` times the segment length are skipped, except a level that has to split the segment.
 
     Parameters
     ----------
@@ -185,17 +182,16 @@ def level_within(sea: Sea, hint: int, start: float, end: float, share: float) ->
 def counts_across(sea: Sea, k: int, off: float, length: float, share: float) -> bool:
     """Return whether a segment that crosses a level has to be split at the level.
 
-    The water at the midpoint of a segment represents the mean along the segment. If the slope of
-    the current changes by b at a level, the error of this mean is b·off²/(2·length). The segment
-    has to be split if twice this error exceeds the fraction `share` of the current at the level.
-    The density, which jumps at the surface for a tow, is treated in the same way.
+    The segment has to be split if the water at its midpoint differs too much from the mean along
+    the segment. If the slope of the current changes by b at the level, the difference is
+    b·off²/(2·length).
 
     Parameters
     ----------
     k : index of the level
     off : depth range of the segment on the far side of the level [m]
     length : depth range of the segment [m]
-    share : allowed error relative to the current or density [-]
+    share : twice the allowed difference, relative to the current or density [-]
     """
     return off > NEAR_A_LEVEL * length and sea.bends[k] * off * off > share * length
 
@@ -206,7 +202,7 @@ def find_bends(intervals: Sequence[Interval], bends: MutableSequence[float]) -> 
     Parameters
     ----------
     intervals : intervals of the water; interval k begins at level k
-    bends : output; one value for each level from -inf to inf
+    bends : output, one value for each level from -inf to inf
     """
     bends[0] = 0.0
     for k in range(1, len(intervals)):

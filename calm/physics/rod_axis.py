@@ -19,22 +19,16 @@ _NOTHING = 1e-12
 def rod_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State, near: float) -> Vector:
     """Compute the axis of a rod for which the moments about its midpoint vanish.
 
-    The axis t is parallel to F + Σ (1 - a_i/L) q_i, where F is the force above the rod, and the
-    loads q_i act at distances a_i from the top of the rod. Since the drags depend on t, the
-    equation is solved by iteration. The normal drags are replaced by the drag of a single element
-    with one current and one drag factor. At the present axis, this drag equals the sum of the
-    normal drags. Each iteration solves for the axis of this element exactly. If only one load has a
-    normal drag, the drag curve of this load is part of the exact solution. Further iterations are
-    needed only because the flow varies along the rod, or because there are several drag curves.
+    The axis is parallel to F + Σ (1 - a_i/L) q_i, where F is the force above the rod, and the loads
+    q_i act at distances a_i from the top of the rod of length L.
 
     Parameters
     ----------
-    near : allowed error of the depth at which the water is sampled for a load [m]; 0 requires full
-        precision
+    near : allowed error of the depth at which the water is sampled [m]; 0 for full precision
 
     Returns
     -------
-    The unit axis. Its vertical component is `NO_BALANCE` if there is no such axis.
+    The unit axis. The vertical component is `NO_BALANCE` if no axis is in balance.
     """
     _, _, _, fx, fy, fz, rise, _ = state
     tx, ty, tz = 0.0, 0.0, rise
@@ -72,7 +66,7 @@ def lone_axis(
     """Return the axis of a rod with a single load of constant drag, by a short iteration.
 
     The iteration starts at the axis t. The vertical component of the result is `NO_BALANCE` if the
-    iteration does not converge.
+    iteration fails.
     """
     _, _, z, fx, fy, fz, _, level = state
     for _ in range(_FEW):
@@ -97,12 +91,10 @@ def lone_axis(
 def bracketed_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State) -> Vector:
     """Return the axis of a rod by bisection, if the iteration in `rod_axis` does not converge.
 
-    The iteration may fail if the water varies much along the rod. The depths of the loads, and so
-    the water at these depths, depend only on the vertical component ("rise") of the axis. In the
-    water for a rise s, the axis in balance has a rise r(s) between -1 and 1, so r(s) - s changes
-    sign. If r jumps, as for a float without net buoyancy at the upper edge of a current, the
-    bisection ends at the jump. The moment on the rod may vanish at the jump; if it does not, the
-    rise of the result is `NO_BALANCE`.
+    The bisection finds a vertical component s of the axis for which r(s) = s. In water sampled at
+    the depths for s, the axis in balance has the vertical component r(s), from -1 to 1. The
+    vertical component of the result is `NO_BALANCE` if r(s) - s jumps past zero, and the moment at
+    the jump does not vanish.
     """
     low, high = -1.0, 1.0
     tx, ty, tz = 0.0, 0.0, -1.0
@@ -254,11 +246,8 @@ def load_force(
 ) -> Vector:
     """Return the force on a rigid piece or clamp with unit axis t [N].
 
-    The force is the sum of net buoyancy, drag, lift and wind force.
-
-    Parameters
-    ----------
-    varied : ratio of the normal drag to the drag with constant coefficients, see `load_variation`
+    The force is the sum of net buoyancy, drag, lift and wind force. `varied` is the drag ratio from
+    `load_variation`.
     """
     scale, squared = density / REFERENCE_DENSITY, u * u + v * v + w * w
     kn = varied * scale * load.normal_drag

@@ -125,8 +125,8 @@ def drag_factor(ratio: float) -> float:
     ratio : maximum speed of the vibration over the current speed normal to the line, λ [-]
     """
     square = ratio * ratio
-    # The integral is (2/3π) √(1 + λ²) [2 (2 + λ²) E(m) - K(m)] with m = λ²/(1 + λ²). The paper prints
-    # 2/π instead of 1/π, which would give f(0) = 2.
+    # The integral gives f = (2/3π) √(1 + λ²) [2 (2 + λ²) E(m) - K(m)] with m = λ²/(1 + λ²). The
+    # paper prints 2/π instead of 1/π, which would give f(0) = 2.
     # K = π/(2 agm), E = K (1 - Σ 2^(n-1) c_n²), from a = 1, b = √(1 - m), c² = m
     a, b = 1.0, 1.0 / sqrt(1.0 + square)
     weight, deficit = 0.5, 0.5 * square / (1.0 + square)
@@ -147,8 +147,8 @@ class Vibration(NamedTuple):
     a1, b1, c1 : coefficients of the amplitude ratio a/D = a1 + b1 φ + c1 φ², where φ is the angle
         between cable and flow in degrees
     greatest : largest factor by which strumming increases Cn of the cable [-]
-    beat : strumming frequency F [Hz] for a whole line, F D [m/s] for one cable of diameter D, or F
-        D/|V| [-] for one point with flow speed |V|
+    beat : strumming frequency F [Hz] for a whole line, F D [m/s] for one cable of diameter D, or
+        F D/|V| [-] for one point with flow speed |V|
     """
 
     a1: float
@@ -177,8 +177,8 @@ def amplitude(vibration: Vibration, angle: float) -> float:
 def strummed(vibration: Vibration, across: float) -> float:
     """Return the drag ratio C*/C₀ = f(λ) of a strumming cable, at most `vibration.greatest`.
 
-    λ = 2π (a/D) F D/(|V| sin φ), where φ is the angle between cable and flow. `vibration.beat` is F
-    D/|V|, and `across` is sin φ. For flow along the cable, the ratio is `vibration.greatest`.
+    λ = 2π (a/D) F D/(|V| sin φ), where φ is the angle between cable and flow. `vibration.beat` is
+    F D/|V|, and `across` is sin φ. For flow along the cable, the ratio is `vibration.greatest`.
     """
     return min(strummed_freely(vibration, across), vibration.greatest)
 
@@ -216,7 +216,7 @@ def amplified_share(
     c, above = drag_share(ax, ay, az, k, vx, vy, vz), inf
     factor = strummed(vibration, _leaning(ax, ay, az, c, vx, vy, vz, flat))
     first = drag_share(ax, ay, az, k * factor, vx, vy, vz)
-    # The fixed-point iteration with f(c) rises to the root. The iteration is extrapolated as long as
+    # The fixed-point iteration with f(c) rises to the root. Extrapolate the iteration as long as
     # the result stays below the root.
     for _ in range(100):
         factor = strummed(vibration, _leaning(ax, ay, az, first, vx, vy, vz, flat))
@@ -255,8 +255,8 @@ class BourgetMarichal:
     Attributes
     ----------
     a1, b1, c1 : coefficients of the amplitude ratio a/D = a1 + b1 φ + c1 φ², with φ in degrees. The
-        paper omits them. The defaults give a/D = 0.5 at 90°, and reproduce the paper's example (C*
-        = 1.25 at the sphere, 16.28° at the ship)
+        paper omits them. The defaults give a/D = 0.5 at 90°, and reproduce the paper's example
+        (C* = 1.25 at the sphere, 16.28° at the ship)
     rest : Cn of the cable without strumming, C₀; valid only for φ > 15°
     ceiling : largest allowed C*
     strouhal : Strouhal number of the cable, for the speed normal to the cable
@@ -316,8 +316,8 @@ class BourgetMarichal:
     ) -> tuple[float, float]:
         """Return C* and a/D of a towed cable without attachments, from its measured angle.
 
-        C* is the drag coefficient for which drag balances weight: w cos φ = ½ρ D C* (V₀ sin φ)². If
-        C* does not exceed C₀, a/D is 0.
+        C* is the drag coefficient for which drag balances weight: w cos φ = ½ρ D C* (V₀ sin φ)².
+        If C* does not exceed C₀, a/D is 0.
 
         Parameters
         ----------
