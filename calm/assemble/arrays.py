@@ -50,8 +50,8 @@ def assemble_line(
     Parameters
     ----------
     pieces : pieces from top to bottom; an anchor is the last piece
-    solver : laws of drag, friction and strumming; the defaults if None
-    gravity : acceleration of gravity, which converts masses to weights [m/s²]
+    solver : laws of drag, friction and strumming; None for the defaults
+    gravity : acceleration of gravity, for the weights of masses [m/s²]
     """
     # the environments of a mooring share its lines, with all results cached on the lines
     given = tuple(pieces), solver or Solver(), gravity
@@ -154,9 +154,9 @@ def assemble_floating(
 ) -> Floating | None:
     """Return the surface properties of the first float.
 
-    Return None if there is no float, or if draft and surface drag of the float are unknown. Without
-    the key `hull`, a sphere has a spherical hull, and a cylinder has a cylindrical hull. Without
-    volume, the draft is unknown.
+    The result is None without a float, or if draft and surface drag are unknown. By default, a
+    sphere has a spherical hull, and a cylinder has a cylindrical hull. Without volume, the draft is
+    unknown.
     """
     parts = (piece.component for piece in pieces)
     floats = (part for part in parts if isinstance(part, files.Rigid) and part.net_buoyancy > 0.0)
@@ -210,10 +210,9 @@ def _hull(component: RigidComponent) -> Hull | None:
 
 
 def assemble_water(environment: Environment) -> Water:
-    """Build the water column.
+    """Build the water column from an environment.
 
-    The levels of the current and density profiles are merged. Viscosity has its own levels. All
-    values are linear between levels.
+    The levels of the current and density profiles are merged. Viscosity has its own levels.
     """
     flows = [environment.current, *_surface_drift(environment)]
     density_levels, density = _density(environment)
@@ -244,8 +243,8 @@ def assemble_water(environment: Environment) -> Water:
 def _viscosity(environment: Environment, levels: Floats, density: Floats) -> tuple[Floats, Floats]:
     """Return depths [m], and kinematic viscosities at these depths [m²/s].
 
-    Without temperature and salinity, the viscosity is constant: that of sea water of 10 °C and
-    salinity 35, or of air.
+    Without temperature and salinity, the viscosity is constant, as in air or in sea water of 10 °C
+    and salinity 35.
     """
     sea = environment.density
     if not isinstance(sea, SeaWater):

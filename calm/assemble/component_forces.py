@@ -53,8 +53,7 @@ def drag_of(component: files.Component, solver: Solver | None = None) -> tuple[f
     """Return the drags Kn and Kt [N/(m/s)²; per metre for a cable or chain], and a flag.
 
     The flag is true if the drag depends on the direction of the flow relative to the axis. An
-    anchor has no drag. `solver` sets the laws of friction and strumming of cables and chains; the
-    defaults apply if None.
+    anchor has no drag. `solver` sets the friction and strumming laws; None sets the defaults.
     """
     if isinstance(component, SphereShape | CylinderShape):
         return _shape_drag(component)
@@ -109,9 +108,9 @@ def axial_drag_of(component: files.Component) -> float:
 def cable_drag(component: FlexibleComponent, solver: Solver) -> tuple[float, float]:
     """Return the drags Kn and Kt per metre of cable or chain [N/(m/s)²].
 
-    Kn of a cable includes strumming, except with Bourget & Marichal's law. Kt of Pode's constant
-    friction is Ct ½ρ Cn D. Pode's default Ct is π/Cn times the default of the quadratic law (0.012,
-    0.022 or 0.031 for a cable, depending on the finish), for the same friction.
+    Kn of a cable includes strumming, except with Bourget & Marichal's law. With Pode's constant
+    friction, Kt is Ct ½ρ Cn D. The default Ct is the default of the quadratic law times π, divided
+    by the default Cn (0.012, 0.022 or 0.031 for a cable, depending on the finish).
     """
     if isinstance(component, Cable):
         usual = drag.CABLE_CN, drag.CABLE_CT[component.finish or "smooth"]
@@ -165,7 +164,7 @@ class Datasheet:
     ----------
     net_buoyancy : net buoyancy, positive up [N]
     kn, kt : drag normal and tangential to the axis at 1 m/s [N/(m/s)²]; for an anchor, None and the
-        drag during the anchor drop
+        drag during the drop
     cd_area : drag coefficient times area, normal to the axis [m²]
     """
 
@@ -178,8 +177,8 @@ class Datasheet:
 def datasheet(definition: Defined, catalogue: files.Catalogue | None = None) -> Datasheet | None:
     """Return the derived values of a component, or the sums over the parts of an assembly.
 
-    Return None for an outline. Return None for an assembly with a part that is not in the
-    catalogue, or that overrides values of its component.
+    The result is None for an outline, and for an assembly with a part that is not in the catalogue
+    or overrides values of its component.
     """
     if isinstance(definition, files.Component):
         return _component_datasheet(definition, 1.0)

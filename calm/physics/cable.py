@@ -36,10 +36,11 @@ from calm.physics.strumming import (
 )
 from calm.physics.track import CableStretch
 
+# without damping, a slack segment at the upper edge of a current would alternate between hanging
+# vertically and trailing with the current
 PASSES, STALLED = 200, 50
 """Largest number of iterations for one segment, and the number after which the iterations are
-damped by one half. Without damping, a slack segment at the upper edge of a current would alternate
-between hanging vertically and trailing with the current.
+damped by one half.
 """
 SWITCH_TOLERANCE = 1e-6
 """Accuracy of the position at which a drag law switches, as a fraction of the segment."""
@@ -50,10 +51,11 @@ AT_A_LEVEL, TRIALS = 1e-9, 10
 range, and largest number of iterations to end a part of a segment at a level.
 """
 Passed = tuple[float, State, float, State, float]
-"""A marched part of a segment. The five values are the unstretched length [m], the state at the
-midpoint and the strain of the upper half, and the state at the bottom and the strain of the lower
-half. If the part is not halved, the second and third values are the state at its top and 0, and the
-last value is the strain of the whole part.
+"""A marched part of a segment:
+
+- unstretched length [m];
+- state at the midpoint, and strain of the upper half; without halves, state at the top, and 0;
+- state at the bottom, and strain of the lower half; without halves, strain of the whole part.
 """
 SETTLED_ROTATION = 1e-6
 """Squared rotation of a segment [rad²] in the last of a few Newton steps below which an approximate
@@ -76,9 +78,8 @@ def segment_lift(cable: CableStretch, cut: float, density: float, gravity: float
 def segment_area(cable: CableStretch, cut: float, density: float, strain: float) -> float:
     """Return the drag area of a segment, as the equivalent length of unstretched cable [m].
 
-    The equivalent length has the same drag in reference water. If `thinning` is ½ (constant
-    volume), stretch increases the length by the factor √(1 + strain). If `thinning` is 0, stretch
-    has no effect.
+    The equivalent length refers to reference water. Stretch increases the length by √(1 + strain)
+    if `thinning` is ½ (constant volume), and not at all if `thinning` is 0.
     """
     area = cut * density / REFERENCE_DENSITY
     if strain != 0.0 and cable.thinning != 0.0:
@@ -233,13 +234,8 @@ def vibrating_share(
 ) -> tuple[float, float]:
     """Return the factor c of `drag_share` for a strumming cable, and the strumming factor f.
 
-    f is the normal drag divided by the normal drag without strumming.
-
-    Parameters
-    ----------
-    vibration : strumming law of the cable
-    tx, ty, tz : latest estimate of the axis, of any length, to which f applies if drag hardly
-        rotates the segment
+    f is the normal drag divided by the normal drag without strumming. (tx, ty, tz) is the latest
+    estimate of the axis, of any length; f applies to this axis if drag hardly rotates the segment.
     """
     speed = sqrt(u * u + v * v + w * w)
     if speed == 0.0:
@@ -268,8 +264,7 @@ def touchdown(
 ) -> Passed:
     """Find the touchdown in a segment, where the force normal to the seabed vanishes.
 
-    Return the result of `pass_halves` for the part above the touchdown. The arguments are as in
-    `pass_halves`.
+    Return the result of `pass_halves` for the part above the touchdown.
     """
     low, high, hanging = 0.0, cut, cut
     carried = off_bed(bed, state[3], state[4], state[5])
@@ -305,8 +300,7 @@ def pass_part(
     """Integrate a segment down to the first point where the segment must be split.
 
     A segment is split at levels of the water profile, and where a drag law switches (see
-    `switch_at`). `halves`, `near` and `expected` are as in `pass_halves`, `share` is as in
-    `counts_across`.
+    `switch_at`). `share` is as in `counts_across`.
     """
     passed = pass_halves(cable, knots, vibration, sea, state, cut, halves, near, expected)
     below = passed[3]
@@ -336,8 +330,7 @@ def split_length(
 ) -> float:
     """Return the length [m] of a segment above the first point where the segment must be split.
 
-    The result is `cut` if there is no such point. `below` is the state below the whole segment. The
-    other arguments are as in `pass_part`.
+    The result is `cut` if there is no such point. `below` is the state below the whole segment.
     """
     part, level = cut, level_within(sea, below[7], -state[2], -below[2], share)
     if level > 0:
@@ -368,7 +361,7 @@ def until_level(
     """Return the length [m] of the part of a segment above a level of the water profile.
 
     The length is approximate unless `near` is 0. `below` is the state below the whole segment, and
-    `k` is the index of the level. The other arguments are as in `pass_part`.
+    `k` is the index of the level.
     """
     _, _, z, fx, fy, fz, _, _ = state
     level, start, whole = sea.levels[k], -z, z - below[2]
@@ -426,14 +419,8 @@ def until_switch(
 ) -> float:
     """Return the length [m] of a segment above the point where a drag law switches.
 
-    The result is `part` if the law does not switch.
-
-    Parameters
-    ----------
-    below : state below the whole segment, of length `cut`
-    part : length of the upper part of the segment to which the search is limited [m]
-    halves, near, expected : as in `pass_halves`
-    law : `OF_FRICTION` or `OF_STRUMMING`
+    Only the upper `part` [m] of the segment is searched. The result is `part` if the law does not
+    switch. `below` is the state below the whole segment, and `law` is as in `switch_at`.
     """
     low, high, length = 0.0, part, part
     at_low = at_high = switch_at(vibration, sea, state, law)
@@ -460,10 +447,9 @@ def until_switch(
 def switch_at(vibration: Vibration, sea: Sea, state: State, law: int) -> float:
     """Return a quantity whose sign changes where a drag law switches.
 
-    - `OF_FRICTION`, where friction of constant size reverses: flow along the cable, positive down
-      the line, times the tension [N m/s];
-    - `OF_STRUMMING`, where the strumming factor reaches its limit: limit minus unlimited factor
-      [-].
+    - `OF_FRICTION` (friction of constant size reverses): flow along the cable times tension [N
+      m/s], positive down the line;
+    - `OF_STRUMMING` (the strumming factor reaches its limit): limit minus unlimited factor [-].
     """
     _, _, z, fx, fy, fz, _, level = state
     u, v, w, _, _ = water_at(sea, -z, level)

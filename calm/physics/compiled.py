@@ -1,9 +1,9 @@
 """Compilation of the physics functions ("laws") to machine code.
 
-A law is a function of floats, named tuples and sequences of named tuples. CPython can run a law
-directly. For compiled laws, sequences are arrays, and sequences of named tuples are arrays of
-records. Compiled and interpreted laws give the same digits. The machine code is stored in the
-user's cache.
+A law is a function of floats, named tuples and sequences of named tuples, which CPython can also
+run directly. In compiled laws, sequences are arrays, and sequences of named tuples are arrays of
+records. Compiled and interpreted laws give the same digits. Machine code is stored in the user's
+cache.
 """
 
 import ctypes
@@ -63,8 +63,7 @@ def set_row(rows: Any, i: int, row: Any) -> None:
 class Compiled:
     """A physics function ("law") compiled to machine code; it is called like the Python function.
 
-    The first call sets the types of the arguments. Later calls must have arguments of the same
-    types, which are not checked.
+    Types of arguments are set by the first call, and not checked in later calls.
     """
 
     def __init__(self, law: Law, kinds: tuple[Any, ...], result: Any) -> None:

@@ -4,9 +4,9 @@ Functions for shapes return the drag at 1 m/s in sea water of 1025 kg/m³: Kn no
 along the axis [N/(m/s)²]. Constant coefficients hold for Reynolds numbers from 1e3 to 2e5
 (cylinders 1e4 to 2e5).
 
-Moment balance of an element with axis t and normal drag Kn|Vn|Vn: let A = F + (0, 0, B)/2, where F
-is the force above the element and B its net buoyancy, and k = Kn/2. Forces along t do not rotate
-the element, so Kn|Vn|V may replace the normal drag. Hence
+In moment balance, the axis t of an element is parallel to A + Kn|Vn|Vn/2. A is the force above the
+element, plus half its net buoyancy. Since forces along t do not rotate the element, Kn|Vn|V may
+replace Kn|Vn|Vn. With k = Kn/2,
 
     t is parallel to A + c V,     c = k |Vn| = k |V × t| = k |V × A| / |A + c V|,
 
@@ -67,8 +67,8 @@ def interpolated(xs: Sequence[float], ys: Sequence[float], x: float) -> float:
 def finite_length_factor(slenderness: float) -> float:
     """Return the factor κ ≤ 1 by which the finite length of a cylinder reduces its drag.
 
-    κ is linear in log(L/D) between the points of a table, and constant for L/D below 1 or above
-    100. `slenderness` is length over diameter, L/D.
+    κ is linear in log(L/D) between the points of a table, and constant for L/D below 1 and above
+    100. `slenderness` is L/D.
 
     Source: DNV-RP-C205 table 6-2 (Re < 2e5); for L/D below 2, Wieselsberger (NACA report 121).
     """
@@ -78,8 +78,7 @@ def finite_length_factor(slenderness: float) -> float:
 def end_face_coefficient(slenderness: float) -> float:
     """Return the drag coefficient Ct of a cylinder in axial flow, based on its end-face area.
 
-    Ct is linear in L/D between 0.1 and 1.8, and constant outside this range. `slenderness` is
-    length over diameter, L/D.
+    Ct is linear in L/D between 0.1 and 1.8, and constant elsewhere. `slenderness` is L/D.
 
     Source: Kritzinger's measurements.
     """
@@ -136,7 +135,7 @@ def measured_drag(speeds: Sequence[float], forces: Sequence[float]) -> float:
 class Friction(Enum):
     """Tangential drag law of a cable or chain; the value is the name of the law in files.
 
-    With current V, unit vector t along the cable, and Vt = (V·t) t, the drag per metre is
+    Drag per metre, with current V, unit vector t along the cable, and Vt = (V·t) t:
 
     - ``berteaux``: Kt |Vt| Vt, with Kt = ½ρ Ct πD (Berteaux, Buoy Engineering, 1976);
     - ``hoerner``: Kt |V| V, with the same Kt (Hoerner, Fluid-Dynamic Drag, 1965);
@@ -158,10 +157,10 @@ BERTEAUX, HOERNER, CONSTANT = (friction.law for friction in Friction)
 
 
 def turning_friction(law: int, kt: float, u: float, v: float, w: float) -> float:
-    """Return the coefficient [N/(m/s)] of a tangential drag that acts along the current.
+    """Return the coefficient of a tangential drag that acts along the current [N/(m/s)].
 
-    The drag is the coefficient times the current u, v, w [m/s], and rotates the cable. The
-    coefficient is 0 for laws whose drag acts along the cable. Kt is in N/(m/s)².
+    The drag is the coefficient times the current u, v, w [m/s]. The coefficient is 0 for laws whose
+    drag acts along the cable. Kt is in N/(m/s)².
     """
     return kt * sqrt(u * u + v * v + w * w) if law == HOERNER else 0.0
 
@@ -189,15 +188,15 @@ Vector = tuple[float, float, float]
 def drag_share(ax: float, ay: float, az: float, k: float, vx: float, vy: float, vz: float) -> float:
     """Return the factor c for which the axis of a freely rotating element is parallel to A + c V.
 
-    c [N/(m/s)] is the smallest root of c |A + c V| = k |V × A|, and lies between 0 and k|V|. If the
-    angle between A and -V is less than 19.5°, there may be three roots. The smallest root applies
-    to a current that increases from rest.
+    c is the smallest root of c |A + c V| = k |V × A|, from 0 to k|V| [N/(m/s)]. If the angle
+    between A and -V is less than 19.5°, there may be three roots; the smallest root applies to a
+    current that increases from rest.
 
     Parameters
     ----------
     ax, ay, az : force A that rotates the element, without the normal drag [N]
-    k : half the normal drag factor of the element, Kn/2 [N/(m/s)²]
-    vx, vy, vz : current V relative to the element [m/s]
+    k : half the normal drag factor, Kn/2 [N/(m/s)²]
+    vx, vy, vz : relative current V [m/s]
     """
     vv = vx * vx + vy * vy + vz * vz
     if k == 0.0 or vv == 0.0:
@@ -291,8 +290,7 @@ def axis_along(
 ) -> Vector:
     """Return the unit axis of an element, opposite to the force A + c V.
 
-    The axis points towards the fixed end. If the force vanishes, the axis is parallel to the
-    current, or points down in still water.
+    If the force vanishes, the axis is parallel to the current, or points down in still water.
     """
     x, y, z = ax + c * vx, ay + c * vy, az + c * vz
     if x * x + y * y + z * z == 0.0:

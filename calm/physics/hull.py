@@ -37,7 +37,7 @@ class Hull:
     height : height from keel to top [m]
     area : lateral area of the whole hull [m²]
     form : SPHERE, SPAR or TABULATED
-    rows : rows of the hull table if the form is TABULATED
+    rows : hull table of a TABULATED hull
     """
 
     height: float
@@ -124,9 +124,9 @@ class Riding(NamedTuple):
     ----------
     draft, freeboard : draft and freeboard [m]; NaN if the hull is unknown
     standing : fraction of the float's height above the water
-    above : fraction out of the water, 0 to 1, of the pieces rigidly connected above the float
+    above : fraction (0 to 1) out of the water of the pieces rigidly connected above the float
     drag : drag at the surface divided by the drag when fully immersed
-    push_east, push_north : wind force to the east and north [N]
+    push_east, push_north : wind force [N]
     """
 
     draft: float
@@ -152,10 +152,10 @@ class Floating:
     hull : hull of the float; None if the draft is unknown
     weight : weight in air [N]
     lift : net buoyancy when fully immersed [N]
-    surface_drag : drag at the surface divided by the drag when fully immersed; None for drag in
-        proportion to the immersed area
+    surface_drag : drag at the surface divided by the drag when fully immersed; None for the
+        immersed fraction of the area
     wind : wind velocity to the east and north [m/s]
-    wind_area : area exposed to the wind [m²]; None for the area of the hull above the water
+    wind_area : area exposed to the wind [m²]; None for the hull above the water
     wind_cd : drag coefficient of the area exposed to the wind
     """
 
@@ -175,8 +175,7 @@ class Floating:
     def riding(self, used: float) -> Riding:
         """Compute the draft of the float at the surface, and the forces on the float.
 
-        `used` is the downward pull of the line divided by the net buoyancy of the immersed float, 0
-        to 1.
+        `used` is as in `riding_of`.
         """
         return riding_of(self.as_numbers, self.hull.rows if self.hull else (), used)
 

@@ -62,9 +62,7 @@ def _functions_in(path: str) -> dict[str, ast.FunctionDef]:
 
 
 def _bound_once(tree: ast.FunctionDef) -> tuple[set[str], set[str]]:
-    """Return two sets of names: the names that are read, and the names that a single statement sets
-    before all statements that read them.
-    """
+    """Return the names that are read, and the names that one statement sets before any reading."""
     set_at: dict[str, list[Any]] = {each.arg: [((0, -1),)] for each in tree.args.args}
     read_at: dict[str, list[Any]] = {}
 
@@ -190,8 +188,8 @@ class _Body(Instructions):
     """Translation of the body of a law.
 
     `known` holds the kinds of the variables and of the result. `widened` is true if a later
-    statement widens a kind, for example from whole to real numbers. The law is then translated
-    again.
+    statement needs a wider kind, for example real instead of whole numbers. The law is then
+    translated again.
     """
 
     def __init__(
@@ -486,7 +484,7 @@ class _Body(Instructions):
         return self.given(found)
 
     def given(self, value: Any) -> Any:
-        """Return a value that is known before the law runs."""
+        """Convert a global number, tuple, function, class or module for use in a law."""
         if isinstance(value, (bool, int, float)):
             return number_of(value)
         if isinstance(value, tuple):
@@ -626,9 +624,9 @@ class _Body(Instructions):
         return gap
 
     def one_of(self, values: list[Any], later: list[list[str]]) -> Any:
-        """Return the value of the branch that is followed.
+        """Merge the values of several branches into the value of the branch that runs.
 
-        Each value is written at the place in `later` that was left for this value.
+        The value of each branch is written at the branch's place in `later`.
         """
         kind = values[0].kind
         for each in values:
@@ -721,7 +719,7 @@ class _Body(Instructions):
         return self.lesser(self.value(WHOLE, f"sub nsw i64 0, {value.text}"), value, "sgt")
 
     def lesser(self, one: Number, other: Number, order: str) -> Number:
-        """Return the number that comes first in an order."""
+        """Return the whole number that comes first in LLVM's order `slt` or `sgt`."""
         test = self.value(TRUTH, f"icmp {order} i64 {one.text}, {other.text}")
         return self.value(WHOLE, f"select i1 {test.text}, i64 {one.text}, i64 {other.text}")
 

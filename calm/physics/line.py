@@ -33,10 +33,10 @@ class MarchError(ArithmeticError):
     """
 
 
+# a bare tuple, because creating a named tuple takes half as long as the balance of a segment
 State = tuple[float, float, float, float, float, float, float, int]
-"""State of a march, x, y, z, fx, fy, fz, tz and level: position [m], force above it [N], vertical
-component of the last axis, and interval of the water. It is a bare tuple, because creating a named
-tuple in CPython takes half as long as the balance of a segment.
+"""State of a march (x, y, z, fx, fy, fz, tz, level): position [m], force above this position [N],
+vertical component of the last axis, and interval of the water profile.
 """
 
 GOES_ON, RUNS_OFF, SEGMENT_UNBALANCED, ROD_UNBALANCED, ENDLESS, NO_ROOM = range(6)
@@ -59,9 +59,9 @@ class Bed(NamedTuple):
 
     Attributes
     ----------
-    east, north : increase in depth of the seabed per metre to the east and north [-]
+    east, north : increase in depth per metre to the east and north [-]
     friction : friction coefficient between line and seabed [-]
-    excess : additional buoyancy per displaced volume, compared with reference water [N/m³]
+    excess : buoyancy per displaced volume, minus the value in reference water [N/m³]
     """
 
     east: float
@@ -97,8 +97,12 @@ SEGMENT, BETTER = 10, 11
 extrapolated positions and forces.
 """
 NO_SEGMENT, ENDS, HALVES, SPLITS = range(4)
-"""Kinds of an element's end: not part of a segment off the seabed; end of a segment; middle of a
-part that is marched in two halves; level that splits a segment.
+"""Kinds of an element's end:
+
+- NO_SEGMENT: not part of a segment off the seabed;
+- ENDS: end of a segment;
+- HALVES: middle of a part that is marched in two halves;
+- SPLITS: level that splits a segment.
 """
 
 
@@ -134,10 +138,10 @@ class Trace:
     Attributes
     ----------
     position, force : (k+1, 3) position of each node [m], and force above the node [N]
-    piece, clamp : (k,) index of the piece, and of the clamp, of each element; the clamp is -1 for
-        an element of the piece itself
-    cut, strain : (k,) unstretched length [m] and strain of each element; the strain is 0 for rigid
-        pieces and clamps
+    piece, clamp : (k,) index of the piece, and of the clamp, of each element; clamp -1 for the
+        piece itself
+    cut, strain : (k,) unstretched length [m] and strain of each element; strain 0 for rigid pieces
+        and clamps
     better : (k+1, 6) extrapolated position [m] and force [N] of each node, if the shape was refined
     """
 
@@ -294,9 +298,9 @@ _CURVES = ("elongation", "drag_curve", "clamp_drag_curve")
 class Line(_Arrays):
     """The n pieces of a line, and the m instruments clamped on the pieces.
 
-    The pieces of a mooring are listed from the free end to the anchor. The pieces of a tow are
-    listed from the ship to the towed body. Buoyancies and drags refer to sea water of 1025 kg/m³.
-    For cables and chains, `buoyancy`, `volume` and drags are per unstretched metre.
+    A mooring is listed from the free end to the anchor, a tow from the ship to the towed body.
+    Buoyancies and drags refer to sea water of 1025 kg/m³. For cables and chains, `buoyancy`,
+    `volume` and drags are per unstretched metre.
 
     Attributes
     ----------
@@ -307,8 +311,8 @@ class Line(_Arrays):
     normal_drag, tangential_drag : (n,) Kn and Kt [N/(m/s)², per metre if flexible]
     directional : (n,) False if the drag is Kn|V|V for any direction of the flow
     compliance : (n,) compliance 1/EA [1/N]; 0 if the piece is inextensible
-    thinning : (n,) exponent in the factor (1 + strain)**thinning on the drag per unstretched metre;
-        1/2 for cables (constant volume), 0 for chains
+    thinning : (n,) exponent of 1 + strain in the drag per unstretched metre: 1/2 for cables
+        (constant volume), 0 for chains
     clamp_piece : (m,) index of the piece that carries the instrument
     clamp_at : (m,) unstretched distance of the instrument from the top of this piece [m]
     clamp_buoyancy, clamp_volume, clamp_drag : (m,) net buoyancy [N], displaced volume [m³], and
@@ -317,15 +321,16 @@ class Line(_Arrays):
     lift, clamp_lift : (n,), (m,) hydrodynamic lift at 1 m/s, positive up [N/(m/s)²]; default 0
     diameter : (n,) diameter of cables that may strum [m]; default 0
     friction : tangential drag law of cables and chains
-    strumming : strumming law of the cables, which increases `normal_drag`; or None
+    strumming : strumming law that increases `normal_drag` of the cables, or None
     towed : whether the free end is towed; rigid pieces at a towed end do not form one rigid body
-    push_east, push_north : (n,) force of the wind on a piece [N]; default 0
+    push_east, push_north : (n,) force of the wind [N]; default 0
     floating : surface properties of the first float; if None, a float that reaches the surface is
         placed just below the surface
-    elongation : (n,) elongation curves of cables, which replace `compliance`; None for other
-        pieces; () if no cable has a curve
+    elongation : (n,) elongation curves of cables, instead of `compliance`
     drag_curve, clamp_drag_curve : (n,), (m,) normal drag of smooth spheres and cylinders against
-        Reynolds number; None for other bodies; () if there are no curves
+        Reynolds number
+
+    Tuples of curves have None for pieces or clamps without a curve, and may be empty.
     """
 
     length: Floats
@@ -398,10 +403,8 @@ class Line(_Arrays):
     def net_force(self, excess: Floats) -> Floats:
         """Return the net buoyancy (n,) of each whole piece with its clamps [N].
 
-        Parameters
-        ----------
-        excess : (n,) buoyancy per displaced cubic metre, minus the value in reference water
-            [N/m³]
+        `excess` (n,) is the buoyancy per displaced volume, minus the value in reference water
+        [N/m³].
         """
         whole = np.where(self.flexible, self.length, 1.0)
         total: Floats = (self.buoyancy + excess * self.volume) * whole
@@ -469,14 +472,13 @@ class Water(_Arrays):
     Attributes
     ----------
     depth : water depth [m]; infinite if there is no seabed
-    level : (k,) depths of the values of current and density [m], strictly increasing, k ≥ 1
+    level : (k,) depths of current and density [m], strictly increasing, k ≥ 1
     u, v, w : (k,) components of the current to the east, to the north, and upward [m/s]
     density : (k,) density [kg/m³]
     gravity : acceleration of gravity [m/s²]
-    deeper_east, deeper_north : increase in depth of the seabed per metre east and north of the
-        anchor [-]
-    viscosity_level, viscosity : (j,) strictly increasing depths [m], and kinematic viscosity at
-        these depths [m²/s]
+    deeper_east, deeper_north : increase in depth of the seabed per metre east and north [-]
+    viscosity_level, viscosity : (j,) depths [m], strictly increasing, and kinematic viscosity
+        [m²/s]
     """
 
     depth: float

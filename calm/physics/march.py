@@ -66,7 +66,7 @@ class End:
 
     Attributes
     ----------
-    z, force : height of the end above the sea surface [m], and force just above the end [N]
+    z, force : height above the sea surface [m], and force just above the end [N]
     cuts : segments used
     record, nodes : record of the march, and number of recorded nodes
     """
@@ -94,14 +94,13 @@ def march(
     record: bool = False,
     compiled: bool = False,
 ) -> End:
-    """Integrate down a line from a free end at a given depth.
+    """Integrate down a line from a free end at a given depth [m].
 
     Parameters
     ----------
-    depth : depth of the free end [m]
     angle_step : largest rotation of a segment [rad]
     reach : largest length of a segment [m]
-    cuts : segments to use; None lets the march choose the segments
+    cuts : segments to use; if None, the march chooses the segments
     record : whether to record every node and element
     compiled : whether to run compiled instead of interpreted code
 

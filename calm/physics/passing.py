@@ -1,12 +1,11 @@
 """Integration (march) down a line from its free end, stage by stage, as functions to compile.
 
-A march starts at a given position of the free end, without force from above. A march returns
-position and force at the other end.
+A march starts at a given position of the free end, without force from above, and returns position
+and force at the other end.
 
-Cables and chains are divided into straight segments. By default the march chooses segments that
-rotate by about the angle step, are short against the water depth, and end at levels of the water
-profile. If segments are given, the segments keep their lengths, so that the end of the line is a
-smooth function of its start.
+Cables and chains are divided into straight segments. The march chooses segments that rotate by
+about the angle step, are short against the water depth, and end at levels of the water profile.
+Given segments keep their lengths, so that the end of the line is a smooth function of its start.
 """
 
 from collections.abc import MutableSequence
@@ -76,11 +75,11 @@ class MarchSettings(NamedTuple):
     reach : largest length of a segment [m]
     near : allowed error of the depth at which the water is sampled [m]; 0 for full precision
     stages : number of stages to march
-    lands : whether the line may lie on the seabed below a touchdown. At the touchdown, below the
-        last buoyant piece, the force normal to the seabed vanishes
+    lands : whether a line may touch down, below its last buoyant piece, where the force normal to
+        the seabed vanishes
     bed : the seabed
     given : whether the segments are given, instead of chosen by the march
-    exact : whether every level of the water profile splits segments, even without appreciable
+    exact : whether segments are split at every level of the water profile, even without appreciable
         effect
     halves : whether each part of a segment is integrated in two halves
     recording : whether every node and element is recorded
@@ -113,11 +112,11 @@ def pass_line(
 
     Parameters
     ----------
-    out : length of line above the surface [m], which replaces `depth`; 0 if the line is submerged
+    out : length of line above the surface [m]; if not 0, the depth is computed from `out`
     cuts, counts : unstretched lengths of the segments [m], and number of segments in each cable;
         input if the segments are given, otherwise output
-    record : array to which nodes and elements are written
-    left : array to which the results are written, with the indices `Z` to `FAILURE`
+    record : output of nodes and elements
+    left : output of results, with the indices `Z` to `FAILURE`
     """
     if out > 0.0:
         depth = floating_depth(course.stages[0], course.loads, sea, out, how.near)

@@ -60,7 +60,7 @@ class Sea(NamedTuple):
     intervals : water in each interval
     bends : relative change of the slopes of current and density at each level [1/m]
     gravity : acceleration of gravity [m/s²]
-    strata : kinematic viscosity in strata, from the top down; the first stratum begins at -inf
+    strata : kinematic viscosity, from the top down; the first stratum begins at -inf
     """
 
     levels: Sequence[float]
@@ -118,7 +118,7 @@ def distance_to_bend(
 ) -> float:
     """Return the distance [m] along a path to the next point where the drag has a kink.
 
-    The drag has a kink at a level, and at a depth where the flow almost vanishes. Kinks nearer than
+    The drag has a kink at a level, and where the flow almost vanishes. Kinks nearer than
     `LEAST_PART` times the segment length are skipped, except a level that has to split the segment.
 
     Parameters
@@ -162,11 +162,8 @@ def in_interval(sea: Sea, i: int, start: float, end: float) -> bool:
 def level_within(sea: Sea, hint: int, start: float, end: float, share: float) -> int:
     """Return the index of the first level at which a straight segment has to be split, or 0.
 
-    Parameters
-    ----------
-    hint : interval at which the search for the two depths starts
-    start, end : depths of the ends of the segment [m]
-    share : see `counts_across`
+    `start` and `end` are the depths of the ends of the segment [m]. The search for the two depths
+    begins at interval `hint`. `share` is as in `counts_across`.
     """
     levels = sea.levels
     i, last = interval_at(levels, start, hint), interval_at(levels, end, hint)
@@ -182,9 +179,8 @@ def level_within(sea: Sea, hint: int, start: float, end: float, share: float) ->
 def counts_across(sea: Sea, k: int, off: float, length: float, share: float) -> bool:
     """Return whether a segment that crosses a level has to be split at the level.
 
-    The segment has to be split if the water at its midpoint differs too much from the mean along
-    the segment. If the slope of the current changes by b at the level, the difference is
-    b·off²/(2·length).
+    Without a split, the water at the midpoint differs from the mean along the segment. If the slope
+    of the current changes by b at the level, the difference is b·off²/(2·length).
 
     Parameters
     ----------
@@ -199,10 +195,7 @@ def counts_across(sea: Sea, k: int, off: float, length: float, share: float) -> 
 def find_bends(intervals: Sequence[Interval], bends: MutableSequence[float]) -> None:
     """Compute the relative change of the slopes of current and density at each level [1/m].
 
-    Parameters
-    ----------
-    intervals : intervals of the water; interval k begins at level k
-    bends : output, one value for each level from -inf to inf
+    Interval k begins at level k. The output `bends` has one value for each level from -inf to inf.
     """
     bends[0] = 0.0
     for k in range(1, len(intervals)):

@@ -31,10 +31,10 @@ class RefereeBody(NamedTuple):
     ----------
     smooth, lengthening : diameter [m] and `lengthening` of the body's `DragCurve`; 0 without a
         curve
-    first_knot, end_knot : range of the body's elongation curve in `Moored.knots`; equal numbers
-        mean no curve
+    first_knot, end_knot : range of the body's elongation curve in `Moored.knots`; equal without a
+        curve
 
-    The remaining attributes are as in `Line`.
+    Other attributes are as in `Line`.
     """
 
     flexible: int
@@ -85,8 +85,8 @@ class RefereeShape(NamedTuple):
 
     Attributes
     ----------
-    record : record of the march, see `calm.physics.line`; row n has node n and the element that
-        ends there
+    record : record of the march (see `calm.physics.line`), where column n has node n and the
+        element that ends there
     nodes, hanging : number of nodes, and number of elements above the touchdown
     first, last : first and last node of every piece
     """
@@ -113,8 +113,8 @@ def element_loads(
 ) -> None:
     """Compute buoyancy, drag and wind force of every element, and write them to `loads` [N].
 
-    The load of a rigid piece follows from the water at its midpoint. The elements of the piece have
-    parts of this load in proportion to their lengths.
+    The load of a rigid piece follows from the water at its midpoint, and is distributed over the
+    elements of the piece by length.
     """
     east, north, up = loads[0], loads[1], loads[2]
     for i in range(shape.nodes - 1):
@@ -357,8 +357,7 @@ def rod_moment(
 ) -> float:
     """Return the angle between a rod of several elements and the force that rotates the rod [rad].
 
-    `top` and `bottom` are the nodes at the ends of the rod, and fx, fy, fz is the force above the
-    rod [N].
+    The rod extends from node `top` to node `bottom`. (fx, fy, fz) is the force above the rod [N].
     """
     dx, dy, dz = chord(shape, top, bottom)
     length = sqrt(dx * dx + dy * dy + dz * dz)

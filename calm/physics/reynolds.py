@@ -1,8 +1,8 @@
 """Drag coefficients of smooth shapes against Reynolds number, including the drag crisis.
 
-The curves hold for clean, smooth bodies in smooth flow; CALM uses the curves only for components
-declared smooth. Paint, fittings and biofouling shift or remove the crisis. At 0.5 m/s, for example,
-a smooth 1 m sphere has Cx = 0.1, and real floats have 0.5 to 0.65.
+The curves hold for clean, smooth bodies in smooth flow. CALM uses the curves only for components
+declared smooth, because paint, fittings and biofouling shift or remove the crisis: a 1 m float in
+0.5 m/s has Cx = 0.5 to 0.65 in reality, and 0.1 as a smooth sphere.
 """
 
 from dataclasses import dataclass
@@ -52,10 +52,8 @@ def cylinder_coefficient(reynolds: float) -> float:
     ----------
     reynolds : Reynolds number |Vn| D/ν [-]; Cn is constant below 3.18 and above 4.94e6
 
-    Source: for Re up to 1.61e5, measurements by Wieselsberger (NACA report 121); from 2.1e5, the
-    recommendation of DNV-RP-C205, figure 6-6, smooth. Between these Reynolds numbers Cn is linear
-    in log Re. In the drag crisis, the recommendation is above the measurements, and so on the safe
-    side.
+    Source: Wieselsberger's measurements (NACA report 121) up to Re = 1.61e5; DNV-RP-C205, figure
+    6-6, smooth, from Re = 2.1e5; linear in log Re between these.
     """
     return interpolated(_CYLINDER_AT, _CYLINDER_CN, log(max(reynolds, _SLOWEST)))
 
@@ -67,8 +65,8 @@ def sphere_coefficient(reynolds: float) -> float:
     ----------
     reynolds : Reynolds number |V| D/ν [-]; Cx is constant below 0.1 and above 1e6
 
-    Source: F. A. Morrison, Data correlation for drag coefficient for sphere (Michigan Technological
-    University, 2016), for Re < 1e6.
+    Source: F. A. Morrison, Data correlation for drag coefficient for sphere, Michigan Technological
+    University, 2016.
     """
     re = min(max(reynolds, _CREEPING), LARGEST_SPHERE)
     intermediate, crisis, beyond = re / 5.0, re / 2.63e5, re / 1e6
@@ -89,8 +87,8 @@ class Smooth(NamedTuple):
     Attributes
     ----------
     reynolds : Reynolds number at 1 m/s [-]
-    lengthening : length factor κ of a cylinder above the drag crisis divided by κ below; 0 for a
-        sphere
+    lengthening : for a cylinder, ratio of the length factors κ above and below the drag crisis; 0
+        for a sphere
     """
 
     reynolds: float
@@ -98,10 +96,9 @@ class Smooth(NamedTuple):
 
 
 def drag_variation(smooth: Smooth, speed: float) -> float:
-    """Return the ratio of the drag at a speed to the drag with a constant coefficient.
+    """Return the ratio of the drag at a normal speed [m/s] to the drag with a constant coefficient.
 
-    The speed [m/s] is normal to the axis. The constant coefficient is Cx = 0.5 for a sphere and Cn
-    = 1.2 κ for a cylinder.
+    The constant coefficient is Cx = 0.5 for a sphere and Cn = 1.2 κ for a cylinder.
     """
     reynolds = smooth.reynolds * speed
     if smooth.lengthening == 0.0:
@@ -120,15 +117,14 @@ def varying_share(
 ) -> float:
     """Return the factor c of `drag_share` for a smooth element, whose drag varies with speed.
 
-    c = k f(s) s [N/(m/s)], where the normal speed s = |Vn| is the smallest root of s |A + k f(s) s
-    V| = |V × A|. Roots less than |V|/16 apart are not distinguished. In the drag crisis, the
-    equation may have several roots; the smallest root applies to a current that increases from
-    rest.
+    c = k f(s) s [N/(m/s)], where the normal speed s is the smallest root of
+    s |A + k f(s) s V| = |V × A|. This root applies to a current that increases from rest. Roots
+    less than |V|/16 apart are not distinguished.
 
     Parameters
     ----------
     k : half the normal drag factor of the element for f = 1 [N/(m/s)²]
-    smooth : properties of the element, from which `drag_variation` gives f(s) > 0
+    smooth : properties of the element, from which `drag_variation` gives f > 0
     """
     speed = sqrt(vx * vx + vy * vy + vz * vz)
     cx, cy, cz = ay * vz - az * vy, az * vx - ax * vz, ax * vy - ay * vx
@@ -204,7 +200,7 @@ def finite_length_factor_above(slenderness: float) -> float:
     """Return the length factor κ of a cylinder above the drag crisis, for Re of at least 2.2e5.
 
     κ is linear in log(L/D) between the points of a table, and constant for L/D below 2 and above
-    100. `slenderness` is length over diameter, L/D.
+    100. `slenderness` is L/D.
 
     Source: DNV-RP-C205, table 6-2, for Re above 2e5.
     """

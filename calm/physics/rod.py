@@ -63,17 +63,16 @@ def pass_rod(
 
     Parameters
     ----------
-    lands : whether the seabed supports a rod that the line cannot carry: either the lower end, or
-        the whole rod if the rod would tip over
+    lands : whether the seabed supports the rod if the line cannot carry the rod
     near : as in `rod_axis`
     record, recording : output for nodes and elements, and whether to record them
     nodes : number of nodes so far
 
     Returns
     -------
-    The state; 0 if the rod lies on the seabed, inf if the rod stands on the seabed, otherwise -1;
-    and the number of nodes. The vertical axis in the state is `NO_BALANCE` if no axis is in
-    balance.
+    The state; -1 if the rod is off the seabed, inf if the rod stands on the seabed, 0 if the rod
+    lies on the seabed; and the number of nodes. The vertical axis in the state is `NO_BALANCE` if
+    no axis is in balance.
     """
     x, y, z, fx, fy, fz, before, level = state
     tx, ty, tz = rod_axis(rod, loads, sea, state, near)

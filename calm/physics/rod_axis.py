@@ -19,8 +19,8 @@ _NOTHING = 1e-12
 def rod_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State, near: float) -> Vector:
     """Compute the axis of a rod for which the moments about its midpoint vanish.
 
-    The axis is parallel to F + Σ (1 - a_i/L) q_i, where F is the force above the rod, and the loads
-    q_i act at distances a_i from the top of the rod of length L.
+    The axis is parallel to F + Σ (1 - a_i/L) q_i. F is the force above the rod, and the loads q_i
+    act at distances a_i from the top of the rod of length L.
 
     Parameters
     ----------
@@ -91,10 +91,10 @@ def lone_axis(
 def bracketed_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State) -> Vector:
     """Return the axis of a rod by bisection, if the iteration in `rod_axis` does not converge.
 
-    The bisection finds a vertical component s of the axis for which r(s) = s. In water sampled at
-    the depths for s, the axis in balance has the vertical component r(s), from -1 to 1. The
-    vertical component of the result is `NO_BALANCE` if r(s) - s jumps past zero, and the moment at
-    the jump does not vanish.
+    In water sampled at the depths for a vertical component s of the axis, the axis in balance has
+    the vertical component r(s), from -1 to 1. The bisection finds s = r(s). The vertical component
+    of the result is `NO_BALANCE` if r(s) - s jumps past zero and the moment does not vanish at the
+    jump.
     """
     low, high = -1.0, 1.0
     tx, ty, tz = 0.0, 0.0, -1.0
@@ -125,7 +125,7 @@ def _axis_in_water_at(
     ty: float,
     tz: float,
 ) -> Vector:
-    """Return the axis in moment balance, in the water at the depths that follow from a `rise`."""
+    """Return the axis of a rod in balance, in water sampled as in `_following_axis`."""
     damping, earlier = 1.0, inf
     for _ in range(_PASSES):
         x, y, z = _following_axis(rod, loads, sea, state, rise, tx, ty, tz)
@@ -146,7 +146,7 @@ def _axis_in_water_at(
 def _turning(
     rod: Stage, loads: Sequence[Load], sea: Sea, state: State, tx: float, ty: float, tz: float
 ) -> float:
-    """Return the force that rotates a rod of axis t, as a fraction of its buoyancy and drag."""
+    """Return the force that rotates a rod of axis t, relative to its buoyancy and drag."""
     _, _, z, fx, fy, fz, _, level = state
     own = 0.0
     for i in range(rod.first, rod.first + rod.size):
@@ -167,10 +167,9 @@ def _following_axis(
     ty: float,
     tz: float,
 ) -> Vector:
-    """Return the next iterate of the axis of a rod.
+    """Return the next iterate of the axis of a rod, from the axis t.
 
-    Drags are combined at the axis t, see `rod_axis`. The water is sampled at the depths that the
-    loads have for a given `rise`.
+    The water is sampled at the depths of the loads for a vertical component `rise` of the axis.
     """
     _, _, z, fx, fy, fz, _, level = state
     ax, ay, az = fx, fy, fz
@@ -203,6 +202,8 @@ def _following_axis(
             share = varied * kn * speed_across(u, v, w, tx, ty, tz)
             total += share
             gx, gy, gz = gx + share * u, gy + share * v, gz + share * w
+    # Several normal drags are replaced by the drag of one element, which equals their sum at the
+    # present axis. The axis of this element is exact.
     if normals == 1 and curve.reynolds > 0.0:
         c = varying_share(ax, ay, az, k, curve, u, v, w)
     else:

@@ -31,10 +31,9 @@ def lay_line(
 ) -> tuple[State, int, float]:
     """Lay a line on the seabed from its touchdown to the anchor.
 
-    The line lies straight in the direction of the force at the touchdown, without drag. Towards the
-    anchor, the tension decreases by friction. The weight of the line decreases the tension
-    downslope, and increases the tension upslope. A slack line lies across the slope. At the
-    touchdown, a rigid piece or clamp may stand on the seabed at a point.
+    The line is straight, in the direction of the force at the touchdown; a slack line lies across
+    the slope. Friction, and weight on a downslope, decrease the tension towards the anchor; weight
+    on an upslope increases the tension. There is no drag.
 
     Parameters
     ----------
@@ -107,8 +106,8 @@ def lay_line(
 def held_back(tension: float, hold: float) -> tuple[float, float]:
     """Return the fraction of a piece of line that is under tension, and the tension at its end.
 
-    The piece lies on the seabed, and begins with `tension` [N]. `hold` is the decrease of the
-    tension along the whole piece by friction and slope [N].
+    The piece lies on the seabed and begins with `tension` [N]. Friction and slope decrease the
+    tension by `hold` [N] along the piece, but not below 0.
     """
     if hold <= tension:
         return 1.0, tension - hold
@@ -139,13 +138,13 @@ def required_weight(
 ) -> Forces:
     """Return the submerged weight that a dead-weight anchor needs to stay in position [N].
 
-    The weight is factor (V + H / friction), but at least 0, as in Dewey's Mooring Design & Dynamics
-    and at WHOI.
+    The weight is factor (V + H / friction), or 0 if this is negative (Dewey, Mooring Design &
+    Dynamics; WHOI).
 
     Parameters
     ----------
-    vertical, horizontal : components V (positive up) and H of the force of the line on the anchor
-        [N]; floats or arrays
+    vertical, horizontal : force of the line on the anchor, V (positive up) and H [N]; floats or
+        arrays
     factor : safety factor against lifting and sliding [-], typically 1.5
     friction : friction coefficient between anchor and seabed [-], typically 0.6
     """
@@ -160,19 +159,16 @@ def closure(
     landed: bool,
     bed: Bed,
 ) -> float:
-    """Return the difference between the sum of the loads and the force at a line's end.
+    """Return the relative difference between the sum of the loads and the force at a line's end.
 
-    The difference is relative to the force. If part of the line lies on the seabed, friction and
-    weight along the seabed are included. The sum of the loads above the touchdown must then have no
-    component normal to the seabed, with two exceptions:
+    If part of the line lies on the seabed, friction and weight along the seabed are included. The
+    sum of the loads above the touchdown must then have no component normal to the seabed, with two
+    exceptions:
 
     - a downward force may act on a rigid piece or clamp that stands on the seabed;
     - an upward force may act on a rigid piece or clamp that lies on the seabed.
 
-    Parameters
-    ----------
-    loads : loads of every element, from `element_loads`
-    landed : whether part of the line lies on the seabed
+    `loads` are from `element_loads`. `landed` is true if part of the line lies on the seabed.
     """
     record, end = shape.record, shape.nodes - 1
     x = y = z = whole = 0.0

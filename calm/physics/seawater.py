@@ -18,8 +18,8 @@ REFERENCE_VISCOSITY = 1.36e-6
 """Default kinematic viscosity [m²/s], for sea water at 10 °C and salinity 35."""
 
 MID_LATITUDE = 45.0
-"""Latitude assumed if the position is unknown [degrees]. It only affects the conversion of depth to
-pressure: between the equator and a pole, the density at 5000 m differs by 0.12 kg/m³.
+"""Latitude assumed if the position is unknown [degrees]. The latitude only affects the conversion
+of depth to pressure: at 5000 m, the density differs by 0.12 kg/m³ between equator and pole.
 """
 
 SOUTHERNMOST = -86.0
@@ -83,9 +83,8 @@ def density(
 ) -> NDArray[np.float64]:
     """Return the in situ density [kg/m³] from temperature, salinity and depth.
 
-    The formula is valid for salinities from 0 to 42 g/kg, temperatures from -6 to 40 °C, and depths
-    down to 10 km. Without a longitude, or far inland, sea water of reference composition is
-    assumed; the error in the open ocean is below 0.03 kg/m³.
+    Valid for 0 to 42 g/kg, -6 to 40 °C, and down to 10 km. Without a longitude, or far inland,
+    reference composition is assumed (error in the open ocean below 0.03 kg/m³).
 
     Parameters
     ----------
@@ -114,8 +113,8 @@ def potential_density(
 ) -> NDArray[np.float64]:
     """Return the density of water that is raised adiabatically to the surface [kg/m³].
 
-    In stable water, this density does not decrease with depth. Reference composition and a latitude
-    of 45 degrees are assumed.
+    In stable water, this density does not decrease with depth. Reference composition and latitude
+    45 are assumed.
 
     Parameters
     ----------

@@ -79,16 +79,16 @@ class ElongationCurve:
 
     Parameters
     ----------
-    points : pairs (load / breaking load [-], strain [-]) with increasing loads up to 1; (0, 0) may
-        be omitted
+    points : pairs (load / breaking load, strain) with increasing loads up to 1; (0, 0) may be
+        omitted
     breaking_load : breaking load [N]
-    permanent : permanent elongation after the first loading [-], which is added at every tension
+    permanent : permanent elongation after the first loading [-], added at every tension
 
     Attributes
     ----------
-    tensions, strains : tensions [N] and strains [-] of the points, starting with (0, 0)
+    tensions, strains : points of the table, starting with (0, 0) [N], [-]
     knots : the curve in the form used by the march, including permanent elongation
-    limit : tension above which results need a warning [N]: the last point, but at most 80 % of the
+    limit : tension above which results need a warning [N]: the last point, at most 80 % of the
         breaking load
 
     Raises

@@ -177,14 +177,14 @@ def amplitude(vibration: Vibration, angle: float) -> float:
 def strummed(vibration: Vibration, across: float) -> float:
     """Return the drag ratio C*/C₀ = f(λ) of a strumming cable, at most `vibration.greatest`.
 
-    λ = 2π (a/D) F D/(|V| sin φ), where φ is the angle between cable and flow. `vibration.beat` is
-    F D/|V|, and `across` is sin φ. For flow along the cable, the ratio is `vibration.greatest`.
+    λ = 2π (a/D) F D/(|V| sin φ), where φ is the angle between cable and flow, sin φ is `across`,
+    and F D/|V| is `vibration.beat`. For flow along the cable, the ratio is `vibration.greatest`.
     """
     return min(strummed_freely(vibration, across), vibration.greatest)
 
 
 def strummed_freely(vibration: Vibration, across: float) -> float:
-    """Return the drag ratio as `strummed` does, but limited to twice `vibration.greatest`."""
+    """Return the drag ratio as in `strummed`, but at most twice `vibration.greatest`."""
     if vibration.beat == 0.0:
         return 1.0
     if across <= 0.0:
@@ -199,13 +199,13 @@ def amplified_share(
     """Return the factor c of `drag_share` for a strumming cable, and the strumming factor f.
 
     f is the normal drag divided by the normal drag without strumming. c [N/(m/s)] is the smallest
-    root of c |A + c V| = k f |V × A|, where f is the factor for the axis A + c V.
+    root of c |A + c V| = k f |V × A|, where f applies to the axis A + c V.
 
     Parameters
     ----------
     k : half the normal drag factor without strumming [N/(m/s)²]
-    vibration : strumming law; f must be at least 1, and decrease as the sine of the angle between
-        axis and current grows
+    vibration : strumming law; f is at least 1, and decreases as the angle between axis and current
+        grows
     """
     speed = sqrt(vx * vx + vy * vy + vz * vz)
     cx, cy, cz = ay * vz - az * vy, az * vx - ax * vz, ax * vy - ay * vx
@@ -250,16 +250,16 @@ class BourgetMarichal:
     """Strumming law of a towed cable, by Bourget and Marichal.
 
     The speed of the ship sets the frequency of the vibration. The local angle φ between cable and
-    flow sets the amplitude, where 0 < φ ≤ π/2 [rad].
+    flow, 0 < φ ≤ π/2 [rad], sets the amplitude.
 
     Attributes
     ----------
     a1, b1, c1 : coefficients of the amplitude ratio a/D = a1 + b1 φ + c1 φ², with φ in degrees. The
-        paper omits them. The defaults give a/D = 0.5 at 90°, and reproduce the paper's example
+        paper omits them; the defaults give a/D = 0.5 at 90°, and reproduce the paper's example
         (C* = 1.25 at the sphere, 16.28° at the ship)
     rest : Cn of the cable without strumming, C₀; valid only for φ > 15°
     ceiling : largest allowed C*
-    strouhal : Strouhal number of the cable, for the speed normal to the cable
+    strouhal : Strouhal number for the speed normal to the cable
     """
 
     a1: float = 1.60185
@@ -323,7 +323,7 @@ class BourgetMarichal:
         ----------
         angle : angle φ between cable and flow, constant along the cable [rad]
         speed : speed V₀ of the ship through the water [m/s]
-        diameter, weight : diameter D [m], and weight w in water per metre [N/m], of the cable
+        diameter, weight : D [m], and w in water [N/m], of the cable
         density : density of the water [kg/m³]
         """
         coefficient = weight * cos(angle) / (0.5 * density * diameter * (speed * sin(angle)) ** 2)

@@ -23,15 +23,14 @@ class Load(NamedTuple):
 
     Attributes
     ----------
-    piece, clamp : indices of the piece and the clamp in the line; the clamp is -1 for the piece
-        itself
+    piece, clamp : indices of piece and clamp in the line; the clamp is -1 for the piece itself
     at : distance of the load's centre from the top of the rod [m]
     lever : fraction of the load that rotates the rod, 1 - `at`/(length of the rod); ½ for a rod
         without length
     length : length of the rigid piece [m]; 0 for a clamp
     diameter, lengthening : values of the load's `DragCurve`; 0 without a curve
 
-    The remaining attributes are as in `Line`.
+    Other attributes are as in `Line`.
     """
 
     piece: int
@@ -59,11 +58,11 @@ class CableStretch(NamedTuple):
     piece : index of the piece in the line
     length : unstretched length [m]
     friction : number of the friction law, see `Friction`
-    first_knot, end_knot : range of the elongation curve among the `Knot` rows of the track; equal
-        numbers mean no curve
+    first_knot, end_knot : range of the elongation curve in the knots of the track; equal without a
+        curve
     diameter : diameter [m] if the cable strums, otherwise 0
 
-    The remaining attributes are as in `Line`.
+    Other attributes are as in `Line`.
     """
 
     piece: int
@@ -89,8 +88,8 @@ class Stage(NamedTuple):
     Attributes
     ----------
     kind : ROD, CABLE or CLAMP
-    first : index of the cable, or of the first load of a rod or clamp
-    size : number of loads of a rod or clamp; 1 for a cable
+    first : index of the cable, or of the first load
+    size : number of loads; 1 for a cable
     length : length of the stage [m]
     """
 
@@ -118,11 +117,8 @@ class Course(NamedTuple):
 class Track:
     """A `Line` as rows of plain numbers for the march, from the free end to the anchor.
 
-    Attributes
-    ----------
-    stages, loads, cables, knots : rows with the fields of `Stage`, `Load`, `CableStretch` and
-        `Knot`
-    vibration : strumming law of the cables
+    The rows have the fields of `Stage`, `Load`, `CableStretch` and `Knot`. `vibration` is the
+    strumming law of the cables.
     """
 
     stages: list[tuple[Any, ...]]
@@ -224,9 +220,9 @@ class Track:
 def head_count(line: Line) -> int:
     """Return the number of pieces at the free end that form one rigid body.
 
-    The body ends with the first buoyant piece. Pieces above, such as a beacon or ballast, are
-    rigidly connected to the buoyant piece. The number is 0 if the end is towed, if no piece is
-    buoyant, or if a cable is above the first buoyant piece.
+    The body ends with the first buoyant piece; pieces above, such as a beacon, are rigidly
+    connected. The number is 0 if the end is towed, if no piece is buoyant, or if a cable is above
+    the first buoyant piece.
     """
     if line.towed:
         return 0
@@ -244,9 +240,9 @@ class _Rows:
     Attributes
     ----------
     length, clamp_at : as in `Line`
-    rigid, clamp : fields of a `Load` after its length, for each piece and for each clamp
-    cable : fields of a `CableStretch` between length and `first_knot`, for each piece
-    strums : diameter of the `CableStretch`, for each piece
+    rigid, clamp : fields of a `Load` after its length, by piece and by clamp
+    cable : fields of a `CableStretch` from `buoyancy` to `friction`, by piece
+    strums : diameter of the `CableStretch`, by piece
     clamps : indices of the clamps of each piece, from the top
     """
 
