@@ -185,7 +185,7 @@ def assemble_floating(
 
 
 def _hull_volume(component: RigidComponent) -> float | None:
-    """Return the displaced volume of the hull [m³], or else the last volume in its table."""
+    """Return the displaced volume of the hull [m³], or else the last volume in the hull table."""
     if component.displaced_volume is None and isinstance(component.hull, Displacement):
         return component.hull.displacement[-1][1]
     return component.displaced_volume

@@ -177,8 +177,8 @@ class Datasheet:
 def datasheet(definition: Defined, catalogue: files.Catalogue | None = None) -> Datasheet | None:
     """Return the derived values of a component, or the sums over the parts of an assembly.
 
-    The result is None for an outline, and for an assembly with a part that is not in the catalogue
-    or overrides values of its component.
+    An outline has no derived values. Nor has an assembly with a part that is not in the catalogue,
+    or that overrides values of its component.
     """
     if isinstance(definition, files.Component):
         return _component_datasheet(definition, 1.0)

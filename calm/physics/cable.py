@@ -475,8 +475,8 @@ def segment_length(
 ) -> float:
     """Return the longest allowed length of the next segment [m].
 
-    The length is limited by the rotation of the segment, by `reach`, by the next level of the water
-    profile, and by the depth of minimum flow. `share` is as in `counts_across`.
+    The limits are the rotation of the segment, `reach`, the next level of the water profile, and
+    the depth of minimum flow. `share` is as in `counts_across`.
     """
     _, _, z, fx, fy, fz, _, level = state
     tension = sqrt(fx * fx + fy * fy + fz * fz)

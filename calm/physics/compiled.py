@@ -38,7 +38,7 @@ Fn = TypeVar("Fn", bound=Law)
 
 
 def within(law: Fn) -> Fn:
-    """Mark a function for inlining into its callers, although it is not short."""
+    """Mark a function for inlining into its callers, even if the function is not short."""
     _within.add(law)
     return law
 
@@ -61,7 +61,7 @@ def set_row(rows: Any, i: int, row: Any) -> None:
 
 
 class Compiled:
-    """A physics function ("law") compiled to machine code; it is called like the Python function.
+    """A physics function ("law") compiled to machine code, and called like the Python function.
 
     Types of arguments are set by the first call, and not checked in later calls.
     """

@@ -188,9 +188,9 @@ Vector = tuple[float, float, float]
 def drag_share(ax: float, ay: float, az: float, k: float, vx: float, vy: float, vz: float) -> float:
     """Return the factor c for which the axis of a freely rotating element is parallel to A + c V.
 
-    c is the smallest root of c |A + c V| = k |V × A|, from 0 to k|V| [N/(m/s)]. If the angle
-    between A and -V is less than 19.5°, there may be three roots; the smallest root applies to a
-    current that increases from rest.
+    c is the smallest root of c |A + c V| = k |V × A|, from 0 to k|V| [N/(m/s)]. Up to three roots
+    exist if the angle between A and -V is less than 19.5°. The smallest root applies to a current
+    that increases from rest.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Values of a law in LLVM's language, and the instructions that read, write and convert them."""
+"""Values of a law in LLVM's language, and instructions to read, write and convert values."""
 
 import builtins
 import struct
@@ -211,7 +211,7 @@ class Instructions:
         return self.value(kind, f"{how[value.kind, kind]} {value.kind} {value.text} to {kind}")
 
     def address_of(self, row: Any) -> str:
-        """Return the address of a tuple. The tuple is written to memory if it is not there yet."""
+        """Return the address of a tuple, which is written to memory if necessary."""
         if isinstance(row, Held):
             return row.address
         address = self.reserve(row.kind)

@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 class MarchError(ArithmeticError):
     """Raised if a march cannot continue.
 
-    A march stops if the forces or moments on an element do not balance, if the line extends without
-    limit, or if the line needs too many segments.
+    The reason is an element out of balance, a line that extends without limit, or a line that needs
+    too many segments.
     """
 
 
@@ -107,7 +107,7 @@ NO_SEGMENT, ENDS, HALVES, SPLITS = range(4)
 
 
 def write_node(record: Record, n: int, state: State) -> None:
-    """Write the position [m] of a state, and the force above it [N], to node n of a record."""
+    """Write position [m] and force above the position [N] of a state to node n of a record."""
     x, y, z, fx, fy, fz, _, _ = state
     record[0][n] = x
     record[1][n] = y
@@ -215,7 +215,7 @@ def once_per_input(make: Callable[[_Given], _Made]) -> Callable[[_Given], _Made]
 
 
 def once_at_rest(make: Callable[[Line, Water], _Made]) -> Callable[[Line, Water], _Made]:
-    """Decorate a function of a line and its water whose result does not depend on the current.
+    """Decorate a function of a line and of water, whose result does not depend on the current.
 
     The line stores the latest result, for all water with the same depth, density and gravity.
     """
@@ -238,7 +238,7 @@ _OfArrays = TypeVar("_OfArrays", bound=_Arrays)
 
 
 def _of_arrays(made: type[_OfArrays]) -> type[_OfArrays]:
-    """Decorate a dataclass so that it converts its arguments to the array types of its fields.
+    """Decorate a dataclass to convert arguments to the array types of the fields.
 
     Raises ValueError if an array has a value that is not finite.
     """

@@ -22,7 +22,7 @@ class Material:
     name : name in files
     words : regular expression for common names of the material, from the beginning of a word
     family : `metal` (corrodes), `fibre` (stretches) or `other`
-    density : density of the solid [kg/m³]; None if it varies
+    density : density of the solid [kg/m³]; None if variable
     potential : middle of the range of corrosion potentials in sea water [V]
     stiffnesses : pairs a, b of published stiffnesses EA = (a + b D) D² of ropes with diameter D
     strength : largest tensile strength of rope wire or yarn [Pa]; None if not used in ropes

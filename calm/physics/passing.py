@@ -5,7 +5,7 @@ and force at the other end.
 
 Cables and chains are divided into straight segments. The march chooses segments that rotate by
 about the angle step, are short against the water depth, and end at levels of the water profile.
-Given segments keep their lengths, so that the end of the line is a smooth function of its start.
+Given segments keep their lengths, which makes the end of the line a smooth function of the start.
 """
 
 from collections.abc import MutableSequence
@@ -187,8 +187,10 @@ def pass_cable(
 
     Returns
     -------
-    The state at the end of the cable; the unstretched length above the touchdown [m], or -1 without
-    touchdown; the total numbers of segments and nodes; and the outcome.
+    - the state at the end of the cable;
+    - the unstretched length above the touchdown [m], or -1 without touchdown;
+    - the numbers of segments and of nodes so far;
+    - the outcome.
     """
     cable, knots, vibration = course.cables[place], course.knots, course.vibration
     if vibration.beat != 0.0:

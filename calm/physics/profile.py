@@ -23,8 +23,7 @@ with no flow.
 class Interval(NamedTuple):
     """Current u, v, w [m/s] and density [kg/m³] of the water between two levels.
 
-    Each quantity is given by its value at the depth `origin` [m] and its increase per metre of
-    depth.
+    Each quantity has a value at the depth `origin` [m] and an increase per metre of depth.
     """
 
     origin: float

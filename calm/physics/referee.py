@@ -113,8 +113,8 @@ def element_loads(
 ) -> None:
     """Compute buoyancy, drag and wind force of every element, and write them to `loads` [N].
 
-    The load of a rigid piece follows from the water at its midpoint, and is distributed over the
-    elements of the piece by length.
+    The load of a rigid piece follows from the water at the piece's midpoint, and is distributed
+    over the elements of the piece by length.
     """
     east, north, up = loads[0], loads[1], loads[2]
     for i in range(shape.nodes - 1):

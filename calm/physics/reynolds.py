@@ -1,8 +1,8 @@
 """Drag coefficients of smooth shapes against Reynolds number, including the drag crisis.
 
-The curves hold for clean, smooth bodies in smooth flow. CALM uses the curves only for components
-declared smooth, because paint, fittings and biofouling shift or remove the crisis: a 1 m float in
-0.5 m/s has Cx = 0.5 to 0.65 in reality, and 0.1 as a smooth sphere.
+The curves hold for clean, smooth bodies in smooth flow, and CALM uses the curves only for
+components declared smooth. Paint, fittings and biofouling shift or remove the crisis. At 0.5 m/s, a
+1 m float has Cx = 0.5 to 0.65 in practice, and 0.1 as a smooth sphere.
 """
 
 from dataclasses import dataclass
@@ -53,7 +53,7 @@ def cylinder_coefficient(reynolds: float) -> float:
     reynolds : Reynolds number |Vn| D/ν [-]; Cn is constant below 3.18 and above 4.94e6
 
     Source: Wieselsberger's measurements (NACA report 121) up to Re = 1.61e5; DNV-RP-C205, figure
-    6-6, smooth, from Re = 2.1e5; linear in log Re between these.
+    6-6, smooth, from Re = 2.1e5; linear in log Re from 1.61e5 to 2.1e5.
     """
     return interpolated(_CYLINDER_AT, _CYLINDER_CN, log(max(reynolds, _SLOWEST)))
 

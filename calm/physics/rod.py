@@ -70,9 +70,9 @@ def pass_rod(
 
     Returns
     -------
-    The state; -1 if the rod is off the seabed, inf if the rod stands on the seabed, 0 if the rod
-    lies on the seabed; and the number of nodes. The vertical axis in the state is `NO_BALANCE` if
-    no axis is in balance.
+    - the state; the vertical axis is `NO_BALANCE` if no axis is in balance;
+    - -1 if the rod is off the seabed, inf if the rod stands there, 0 if the rod lies there;
+    - the number of nodes.
     """
     x, y, z, fx, fy, fz, before, level = state
     tx, ty, tz = rod_axis(rod, loads, sea, state, near)

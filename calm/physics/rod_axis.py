@@ -17,7 +17,7 @@ _NOTHING = 1e-12
 
 
 def rod_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State, near: float) -> Vector:
-    """Compute the axis of a rod for which the moments about its midpoint vanish.
+    """Compute the axis of a rod for which the moments about the midpoint vanish.
 
     The axis is parallel to F + Σ (1 - a_i/L) q_i. F is the force above the rod, and the loads q_i
     act at distances a_i from the top of the rod of length L.

@@ -104,7 +104,7 @@ def lay_line(
 
 
 def held_back(tension: float, hold: float) -> tuple[float, float]:
-    """Return the fraction of a piece of line that is under tension, and the tension at its end.
+    """Return the fraction of a piece of line that is under tension, and the tension at the end.
 
     The piece lies on the seabed and begins with `tension` [N]. Friction and slope decrease the
     tension by `hold` [N] along the piece, but not below 0.
@@ -138,8 +138,8 @@ def required_weight(
 ) -> Forces:
     """Return the submerged weight that a dead-weight anchor needs to stay in position [N].
 
-    The weight is factor (V + H / friction), or 0 if this is negative (Dewey, Mooring Design &
-    Dynamics; WHOI).
+    The weight is factor (V + H / friction), but not less than 0 (Dewey, Mooring Design & Dynamics;
+    WHOI).
 
     Parameters
     ----------

@@ -255,8 +255,8 @@ class BourgetMarichal:
     Attributes
     ----------
     a1, b1, c1 : coefficients of the amplitude ratio a/D = a1 + b1 φ + c1 φ², with φ in degrees. The
-        paper omits them; the defaults give a/D = 0.5 at 90°, and reproduce the paper's example
-        (C* = 1.25 at the sphere, 16.28° at the ship)
+        paper omits the coefficients. The defaults give a/D = 0.5 at 90°, and reproduce the paper's
+        example (C* = 1.25 at the sphere, 16.28° at the ship)
     rest : Cn of the cable without strumming, C₀; valid only for φ > 15°
     ceiling : largest allowed C*
     strouhal : Strouhal number for the speed normal to the cable
