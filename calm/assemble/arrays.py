@@ -45,13 +45,13 @@ def assemble_line(
 ) -> Line:
     """Build the arrays of the line above the anchor, or of a whole towed line, in piece order.
 
-    A piece whose length is fitted has length 0 until the length is known.
+    A piece with unknown fitted length has length 0.
 
     Parameters
     ----------
     pieces : pieces from top to bottom; an anchor is the last piece
-    solver : laws of drag, friction and strumming; the defaults if None
-    gravity : acceleration of gravity, used to convert masses to weights [m/s²]
+    solver : laws of drag, friction and strumming; None for the defaults
+    gravity : acceleration of gravity, for the weights of masses [m/s²]
     """
     # the environments of a mooring share its lines, with all results cached on the lines
     given = tuple(pieces), solver or Solver(), gravity
@@ -131,10 +131,7 @@ def _elongation(component: files.Component) -> ElongationCurve | None:
 
 
 def with_axial_clamps(line: Line, pieces: Sequence[files.Piece]) -> Line:
-    """Return a copy of a line in which the drag of the clamps is the drag in axial flow.
-
-    The flow is axial during descent and ascent.
-    """
+    """Return a copy of a line with the drag of clamps in axial flow, as in descent and ascent."""
     clamps = [clamp.component for piece in pieces for clamp in piece.clamps]
     axial = [drag_of(each)[2] for each in clamps]
     curves = tuple(
@@ -155,12 +152,11 @@ def vibration_law(solver: Solver) -> BourgetMarichal | None:
 def assemble_floating(
     pieces: Sequence[files.Piece], environment: Environment, water: Water
 ) -> Floating | None:
-    """Return the properties of the first float when it is at the surface.
+    """Return the surface properties of the first float.
 
-    The key `hull` of the component specifies the hull. Without this key, a sphere has a spherical
-    hull, and a cylinder has a cylindrical hull. If the volume is unknown, the draft is unknown too,
-    and only `k_surface` has an effect. Return None if there is no float, or if both the draft and
-    the surface drag of the float are unknown.
+    The result is None without a float, or if draft and surface drag are unknown. By default, a
+    sphere has a spherical hull, and a cylinder has a cylindrical hull. Without volume, the draft is
+    unknown.
     """
     parts = (piece.component for piece in pieces)
     floats = (part for part in parts if isinstance(part, files.Rigid) and part.net_buoyancy > 0.0)
@@ -189,7 +185,7 @@ def assemble_floating(
 
 
 def _hull_volume(component: RigidComponent) -> float | None:
-    """Return the displaced volume of the hull [m³], or else the last volume in its table."""
+    """Return the displaced volume of the hull [m³], or else the last volume in the hull table."""
     if component.displaced_volume is None and isinstance(component.hull, Displacement):
         return component.hull.displacement[-1][1]
     return component.displaced_volume
@@ -214,10 +210,9 @@ def _hull(component: RigidComponent) -> Hull | None:
 
 
 def assemble_water(environment: Environment) -> Water:
-    """Build the water column.
+    """Build the water column from an environment.
 
-    The levels of the current and density profiles are merged. Viscosity has its own levels. All
-    values are linear between levels.
+    The levels of the current and density profiles are merged. Viscosity has its own levels.
     """
     flows = [environment.current, *_surface_drift(environment)]
     density_levels, density = _density(environment)
@@ -248,8 +243,8 @@ def assemble_water(environment: Environment) -> Water:
 def _viscosity(environment: Environment, levels: Floats, density: Floats) -> tuple[Floats, Floats]:
     """Return depths [m], and kinematic viscosities at these depths [m²/s].
 
-    Without temperature and salinity, the viscosity is constant: that of sea water of 10 °C and
-    salinity 35, or of air.
+    Without temperature and salinity, the viscosity is constant, as in air or in sea water of 10 °C
+    and salinity 35.
     """
     sea = environment.density
     if not isinstance(sea, SeaWater):

@@ -20,19 +20,18 @@ from calm.units import QuantityError, parse_quantity
 def net_buoyancy(component: files.Component, gravity: float) -> float:
     """Return the net buoyancy in reference water, positive up [N; N/m for a cable or chain].
 
-    The value is the specified buoyancy or weight. Without a buoyancy or weight, the value is
-    computed from the mass and the acceleration of gravity [m/s²].
+    Without a specified buoyancy or weight, the net buoyancy follows from the mass and the
+    acceleration of gravity [m/s²].
     """
     given = any(getattr(component, name, None) is not None for name in ("buoyancy", "weight"))
     return component.net_buoyancy * (1.0 if given else gravity / STANDARD_GRAVITY)
 
 
 def mass_in_air(component: files.Component) -> float | None:
-    """Return the mass in air [kg; kg/m for a cable or chain].
+    """Return the mass in air [kg; kg/m for a cable or chain], or None if unknown.
 
-    An unspecified mass is computed from the weight in water and the displaced volume. If the volume
-    is unknown, the density of the material is used. The default material of a chain or an anchor is
-    steel. Return None if both the volume and the density are unknown.
+    An unspecified mass follows from the weight in water and the displaced volume or, without
+    volume, the density of the material. Chains and anchors are of steel by default.
     """
     if component.mass is not None:
         return component.mass
@@ -53,12 +52,8 @@ def mass_in_air(component: files.Component) -> float | None:
 def drag_of(component: files.Component, solver: Solver | None = None) -> tuple[float, float, bool]:
     """Return the drags Kn and Kt [N/(m/s)²; per metre for a cable or chain], and a flag.
 
-    The flag is true if the drag depends on the inclination of the axis to the flow.
-
-    Parameters
-    ----------
-    component : component of any kind; an anchor has no drag
-    solver : laws of friction and strumming of cables and chains; the defaults if None
+    The flag is true if the drag depends on the direction of the flow relative to the axis. An
+    anchor has no drag. `solver` sets the friction and strumming laws; None sets the defaults.
     """
     if isinstance(component, SphereShape | CylinderShape):
         return _shape_drag(component)
@@ -113,12 +108,9 @@ def axial_drag_of(component: files.Component) -> float:
 def cable_drag(component: FlexibleComponent, solver: Solver) -> tuple[float, float]:
     """Return the drags Kn and Kt per metre of cable or chain [N/(m/s)²].
 
-    A cable's Kn includes strumming. With Bourget & Marichal's law, however, Kn excludes strumming,
-    because the solver computes the effect of strumming.
-
-    Pode's constant friction is Kt = Ct ½ρ Cn D. If a cable or chain has no Ct, Pode's law uses the
-    default Ct π/Cn (0.012, 0.022 or 0.031, depending on the finish), so that the friction is the
-    same as in the quadratic law.
+    Kn of a cable includes strumming, except with Bourget & Marichal's law. With Pode's constant
+    friction, Kt is Ct ½ρ Cn D. The default Ct is the default of the quadratic law times π, divided
+    by the default Cn (0.012, 0.022 or 0.031 for a cable, depending on the finish).
     """
     if isinstance(component, Cable):
         usual = drag.CABLE_CN, drag.CABLE_CT[component.finish or "smooth"]
@@ -171,8 +163,8 @@ class Datasheet:
     Attributes
     ----------
     net_buoyancy : net buoyancy, positive up [N]
-    kn, kt : drag normal and tangential to the axis at 1 m/s [N/(m/s)²]; for an anchor, `kn` is None
-        and `kt` is the drag during the anchor drop
+    kn, kt : drag normal and tangential to the axis at 1 m/s [N/(m/s)²]; for an anchor, None and the
+        drag during the drop
     cd_area : drag coefficient times area, normal to the axis [m²]
     """
 
@@ -185,8 +177,8 @@ class Datasheet:
 def datasheet(definition: Defined, catalogue: files.Catalogue | None = None) -> Datasheet | None:
     """Return the derived values of a component, or the sums over the parts of an assembly.
 
-    Return None for an outline. An assembly has derived values only if the catalogue contains all
-    its parts, and if no part overrides values of its component. Otherwise return None.
+    An outline has no derived values. Nor has an assembly with a part that is not in the catalogue,
+    or that overrides values of its component.
     """
     if isinstance(definition, files.Component):
         return _component_datasheet(definition, 1.0)

@@ -36,10 +36,11 @@ from calm.physics.strumming import (
 )
 from calm.physics.track import CableStretch
 
+# without damping, a slack segment at the upper edge of a current would alternate between hanging
+# vertically and trailing with the current
 PASSES, STALLED = 200, 50
 """Largest number of iterations for one segment, and the number after which the iterations are
-damped by one half. Without damping, a slack segment at the upper edge of a current would alternate
-between hanging vertically and trailing with the current.
+damped by one half.
 """
 SWITCH_TOLERANCE = 1e-6
 """Accuracy of the position at which a drag law switches, as a fraction of the segment."""
@@ -50,10 +51,11 @@ AT_A_LEVEL, TRIALS = 1e-9, 10
 range, and largest number of iterations to end a part of a segment at a level.
 """
 Passed = tuple[float, State, float, State, float]
-"""A marched part of a segment. The five values are the unstretched length [m], the state at the
-midpoint and the strain of the upper half, and the state at the bottom and the strain of the lower
-half. If the part is not halved, the second and third values are the state at its top and 0, and the
-last value is the strain of the whole part.
+"""A marched part of a segment:
+
+- unstretched length [m];
+- state at the midpoint, and strain of the upper half; without halves, state at the top, and 0;
+- state at the bottom, and strain of the lower half; without halves, strain of the whole part.
 """
 SETTLED_ROTATION = 1e-6
 """Squared rotation of a segment [rad²] in the last of a few Newton steps below which an approximate
@@ -74,12 +76,10 @@ def segment_lift(cable: CableStretch, cut: float, density: float, gravity: float
 
 
 def segment_area(cable: CableStretch, cut: float, density: float, strain: float) -> float:
-    """Return the drag area of a segment, as a length of unstretched cable [m].
+    """Return the drag area of a segment, as the equivalent length of unstretched cable [m].
 
-    This length of cable has the same drag in reference water as the stretched segment.
-
-    If the cable keeps its volume (thinning ½), stretch increases the drag by the factor √(1 +
-    strain). If thinning is 0, stretch does not change the drag.
+    The equivalent length refers to reference water. Stretch increases the length by √(1 + strain)
+    if `thinning` is ½ (constant volume), and not at all if `thinning` is 0.
     """
     area = cut * density / REFERENCE_DENSITY
     if strain != 0.0 and cable.thinning != 0.0:
@@ -100,7 +100,7 @@ def segment_drag(
 ) -> Vector:
     """Return the drag of the current u, v, w [m/s] on a segment with unit axis t [N].
 
-    The tangential drag follows the friction law with the number `friction`.
+    `friction` is the number of the tangential drag law.
     """
     if friction == BERTEAUX:
         return drag_force(kn, kt, u, v, w, tx, ty, tz)
@@ -120,21 +120,17 @@ def pass_segment(
     near: float,
     expected: Vector,
 ) -> tuple[State, float]:
-    """Compute the state below a segment of unstretched length `cut` [m], and the segment's strain.
-
-    The axis, the drag at mid-height and the stretch of the segment depend on each other. They are
-    iterated until the vertical extent of the segment per unstretched metre converges.
+    """Compute the state below a straight segment of cable, and the strain of the segment.
 
     Parameters
     ----------
-    near : allowed error of the depth at which the water is sampled for a segment [m]; 0 requires
-        full precision
+    cut : unstretched length of the segment [m]
+    near : allowed error of the depth at which the water is sampled [m]; 0 for full precision
     expected : initial estimate of the load per metre, from the segment above [N/m]
 
     Returns
     -------
-    The state below the segment, and the strain, which is `NO_BALANCE` if the iteration does not
-    converge.
+    The state, and the strain. The strain is `NO_BALANCE` if the iteration does not converge.
     """
     x, y, z, fx, fy, fz, tz, level = state
     kn, kt, friction = cable.normal_drag, cable.tangential_drag, cable.friction
@@ -209,9 +205,9 @@ def pass_halves(
     near: float,
     expected: Vector,
 ) -> Passed:
-    """Integrate a segment, or a part of a segment, as one straight piece or as two straight halves.
+    """Integrate a part of a segment as one straight piece, or as two straight halves.
 
-    `near` and `expected` are as in `pass_segment`.
+    `cut` is the unstretched length of the part [m]. `near` and `expected` are as in `pass_segment`.
     """
     half = 0.5 * cut if halves else cut
     above, upper, below, strain = state, 0.0, state, 0.0
@@ -236,15 +232,10 @@ def vibrating_share(
     ty: float,
     tz: float,
 ) -> tuple[float, float]:
-    """Return the result of `drag_share` for a strumming cable, and the strumming factor.
+    """Return the factor c of `drag_share` for a strumming cable, and the strumming factor f.
 
-    The strumming factor is the normal drag divided by the normal drag without strumming.
-
-    Parameters
-    ----------
-    vibration : strumming law of the cable
-    tx, ty, tz : latest estimate of the axis, as a vector of any length. If drag hardly rotates the
-        segment, the factor is computed for this axis
+    f is the normal drag divided by the normal drag without strumming. (tx, ty, tz) is the latest
+    estimate of the axis, of any length; f applies to this axis if drag hardly rotates the segment.
     """
     speed = sqrt(u * u + v * v + w * w)
     if speed == 0.0:
@@ -273,8 +264,7 @@ def touchdown(
 ) -> Passed:
     """Find the touchdown in a segment, where the force normal to the seabed vanishes.
 
-    Return the result of `pass_halves` for the part above the touchdown. `halves`, `near` and
-    `expected` are as in `pass_halves`.
+    Return the result of `pass_halves` for the part above the touchdown.
     """
     low, high, hanging = 0.0, cut, cut
     carried = off_bed(bed, state[3], state[4], state[5])
@@ -307,14 +297,10 @@ def pass_part(
     expected: Vector,
     share: float,
 ) -> Passed:
-    """Integrate a segment down to the first point where the segment has to be split.
+    """Integrate a segment down to the first point where the segment must be split.
 
-    The segment is split at levels of the water profile, and at points where a drag law switches.
-
-    Parameters
-    ----------
-    halves, near, expected : see `pass_halves`
-    share : see `counts_across`
+    A segment is split at levels of the water profile, and where a drag law switches (see
+    `switch_at`). `share` is as in `counts_across`.
     """
     passed = pass_halves(cable, knots, vibration, sea, state, cut, halves, near, expected)
     below = passed[3]
@@ -342,16 +328,9 @@ def split_length(
     expected: Vector,
     share: float,
 ) -> float:
-    """Return the length [m] of a segment above the first point where the segment has to be split.
+    """Return the length [m] of a segment above the first point where the segment must be split.
 
-    The segment is split at levels of the water profile, and at points where a drag law switches.
-    The result is `cut` if there is no such point.
-
-    Parameters
-    ----------
-    below : state below the whole segment
-    halves, near, expected : see `pass_halves`
-    share : see `counts_across`
+    The result is `cut` if there is no such point. `below` is the state below the whole segment.
     """
     part, level = cut, level_within(sea, below[7], -state[2], -below[2], share)
     if level > 0:
@@ -381,14 +360,8 @@ def until_level(
 ) -> float:
     """Return the length [m] of the part of a segment above a level of the water profile.
 
-    The length is estimated from the mean load of the segment, and refined by secant steps if full
-    precision is required.
-
-    Parameters
-    ----------
-    below : state below the whole segment
-    halves, near : see `pass_halves`
-    k, share : see `counts_across`
+    The length is approximate unless `near` is 0. `below` is the state below the whole segment, and
+    `k` is the index of the level.
     """
     _, _, z, fx, fy, fz, _, _ = state
     level, start, whole = sea.levels[k], -z, z - below[2]
@@ -417,13 +390,12 @@ def until_level(
 
 
 def sinking(fx: float, fy: float, fz: float, load: Vector, length: float) -> float:
-    """Return the increase in depth per metre along a segment.
+    """Return the increase in depth per metre along a uniformly loaded segment.
 
     Parameters
     ----------
     fx, fy, fz : force above the segment [N]
-    load : uniform load on the segment [N/m]
-    length : length of the segment [m]
+    load, length : load [N/m] and length [m] of the segment
     """
     half = 0.5 * length
     x, y, z = fx + half * load[0], fy + half * load[1], fz + half * load[2]
@@ -447,15 +419,8 @@ def until_switch(
 ) -> float:
     """Return the length [m] of a segment above the point where a drag law switches.
 
-    Only the uppermost `part` of the segment is searched. The result is `part` if the law does not
-    switch in this part. The point is found by the regula falsi (Illinois method).
-
-    Parameters
-    ----------
-    below : state below the whole segment, of length `cut`
-    part : length of the part of the segment that is searched [m]
-    halves, near, expected : see `pass_halves`
-    law : see `switch_at`
+    Only the upper `part` [m] of the segment is searched. The result is `part` if the law does not
+    switch. `below` is the state below the whole segment, and `law` is as in `switch_at`.
     """
     low, high, length = 0.0, part, part
     at_low = at_high = switch_at(vibration, sea, state, law)
@@ -482,10 +447,9 @@ def until_switch(
 def switch_at(vibration: Vibration, sea: Sea, state: State, law: int) -> float:
     """Return a quantity whose sign changes where a drag law switches.
 
-    If `law` is `OF_FRICTION`, the quantity is the flow along the cable, positive down the line,
-    times the tension [N m/s]; friction of constant size reverses with this flow. If `law` is
-    `OF_STRUMMING`, the quantity is the upper limit of the strumming factor minus the factor before
-    this limit is applied [-].
+    - `OF_FRICTION` (friction of constant size reverses): flow along the cable times tension [N
+      m/s], positive down the line;
+    - `OF_STRUMMING` (the strumming factor reaches its limit): limit minus unlimited factor [-].
     """
     _, _, z, fx, fy, fz, _, level = state
     u, v, w, _, _ = water_at(sea, -z, level)
@@ -511,10 +475,8 @@ def segment_length(
 ) -> float:
     """Return the longest allowed length of the next segment [m].
 
-    The length is limited by the rotation of the segment, by `reach`, by the next level of the water
-    profile, and by the depth of minimum flow. The rotation is computed from the loads at both ends
-    of the segment and the tension at its top. Near a free end the tension vanishes; a lower limit
-    on the length keeps the number of segments finite. `share` is as in `counts_across`.
+    The limits are the rotation of the segment, `reach`, the next level of the water profile, and
+    the depth of minimum flow. `share` is as in `counts_across`.
     """
     _, _, z, fx, fy, fz, _, level = state
     tension = sqrt(fx * fx + fy * fy + fz * fz)
@@ -524,6 +486,7 @@ def segment_length(
     if tension > 0.0:
         sinking = (1.0 + strain) * fz / tension
         tx, ty, tz = -fx / tension, -fy / tension, -fz / tension
+    # near a free end the tension vanishes: the floor keeps the number of segments finite
     length, floor = reach, 1e-4 * reach
     kn = cable.normal_drag * (vibration.greatest if vibration.beat > 0.0 else 1.0)
     depth = -z
@@ -550,10 +513,7 @@ def rate_of_turn(
 ) -> float:
     """Return the tension of a cable divided by its allowed segment length [N/m].
 
-    The load is computed for a given depth. `t` is the axis of the cable. If the tension is little
-    more than the weight of the line below, the tension decreases along a segment, which therefore
-    rotates faster and faster. For this reason, a term for the decrease of the tension is added to
-    the term for the rotation.
+    The load is computed in the water at `depth`, for a cable with unit axis t.
     """
     u, v, w, density, _ = water_at(sea, depth, level)
     lift = segment_lift(cable, 1.0, density, sea.gravity)
@@ -561,4 +521,6 @@ def rate_of_turn(
     along = lift * tz
     qx, qy, qz = qx - along * tx, qy - along * ty, qz + lift - along * tz
     rate = sqrt(qx * qx + qy * qy + qz * qz) / angle_step
+    # If the tension is little more than the weight of the line below, the tension decreases along
+    # the segment, which then rotates faster and faster. Hence a term for the decrease.
     return rate + 2.0 * max(along, 0.0) if taut else rate

@@ -1,11 +1,9 @@
-"""Compilation of the physics functions ("laws") to machine code, from the same source that
-CPython runs.
+"""Compilation of the physics functions ("laws") to machine code.
 
-A *law* is a function of floats, named tuples and sequences of named tuples that CPython can run
-directly. In compiled laws, sequences are arrays, and sequences of named tuples are arrays of
-records. `calm.physics.law_compiler` translates a law and all laws that it calls, and LLVM makes
-machine code, which is stored in the user's cache. The arithmetic is not reordered, so compiled and
-interpreted laws give the same digits.
+A law is a function of floats, named tuples and sequences of named tuples, which CPython can also
+run directly. In compiled laws, sequences are arrays, and sequences of named tuples are arrays of
+records. Compiled and interpreted laws give the same digits. Machine code is stored in the user's
+cache.
 """
 
 import ctypes
@@ -40,7 +38,7 @@ Fn = TypeVar("Fn", bound=Law)
 
 
 def within(law: Fn) -> Fn:
-    """Mark a function for inlining into its callers, although it is not short."""
+    """Mark a function for inlining into its callers, even if the function is not short."""
     _within.add(law)
     return law
 
@@ -63,10 +61,9 @@ def set_row(rows: Any, i: int, row: Any) -> None:
 
 
 class Compiled:
-    """A physics function ("law") compiled to machine code; it is called like the Python function.
+    """A physics function ("law") compiled to machine code, and called like the Python function.
 
-    The types of the arguments are checked only in the first call, which saves time in short solves.
-    The arguments of all later calls must have the same types.
+    Types of arguments are set by the first call, and not checked in later calls.
     """
 
     def __init__(self, law: Law, kinds: tuple[Any, ...], result: Any) -> None:
@@ -113,9 +110,9 @@ _engines: list[Any] = []
 def _address_of(law: Law, kinds: tuple[Any, ...], result: Any) -> int:
     """Return the address of the machine code of a law for given kinds of arguments.
 
-    The code is read from the cache, or compiled if the cache does not contain it.
+    The code comes from the cache, or is compiled and stored there.
 
-    Raise UsageError if LLVM does not work, or ModuleNotFoundError if it is not installed.
+    Raise UsageError if LLVM does not work, or ModuleNotFoundError if LLVM is not installed.
     """
     if (error := fault()) is not None:
         if isinstance(error, ModuleNotFoundError):
@@ -284,10 +281,10 @@ def _packer(kind: Any) -> Callable[[Any], Any]:
 
 @cache
 def cache_folder() -> Path | None:
-    """Return the folder for compiled code, or None if no folder can be written.
+    """Return the folder for compiled code, or None if the folder cannot be written.
 
-    The folder is `CALM_CACHE_DIR` if this variable is set, otherwise CALM's folder in the user's
-    cache. Every version of the sources has its own subfolder.
+    The folder is a subfolder for this version of the sources, in `CALM_CACHE_DIR` or in CALM's
+    folder in the user's cache.
     """
     given = os.environ.get("CALM_CACHE_DIR") or os.environ.get("NUMBA_CACHE_DIR")  # its old name
     try:

@@ -1,16 +1,16 @@
 """Drag coefficients by shape, independent of Reynolds number, and tangential drag laws of cables.
 
-The functions for shapes return the drag at 1 m/s in sea water of 1025 kg/m³: Kn normal to the axis,
-Kt along it [N/(m/s)²]. Constant coefficients hold for Reynolds numbers from 1e3 to 2e5 (cylinders
-1e4 to 2e5).
+Functions for shapes return the drag at 1 m/s in sea water of 1025 kg/m³: Kn normal to the axis, Kt
+along the axis [N/(m/s)²]. Constant coefficients hold for Reynolds numbers from 1e3 to 2e5
+(cylinders 1e4 to 2e5).
 
-An element with axis t, load q = (0, 0, B) + drag, and force F above it is in moment balance if t =
--(F + q/2)/|F + q/2|. Components of q along t do not turn the element, and the normal drag Kn|Vn|Vn
-differs from Kn|Vn|V only along t. So, with A = F + (0, 0, B)/2 and k = Kn/2,
+In moment balance, the axis t of an element is parallel to A + Kn|Vn|Vn/2. A is the force above the
+element, plus half its net buoyancy. Since forces along t do not rotate the element, Kn|Vn|V may
+replace Kn|Vn|Vn. With k = Kn/2,
 
     t is parallel to A + c V,     c = k |Vn| = k |V × t| = k |V × A| / |A + c V|,
 
-which is one scalar equation for c, solved exactly for drag of any strength.
+which is one scalar equation for c.
 """
 
 from __future__ import annotations
@@ -67,12 +67,8 @@ def interpolated(xs: Sequence[float], ys: Sequence[float], x: float) -> float:
 def finite_length_factor(slenderness: float) -> float:
     """Return the factor κ ≤ 1 by which the finite length of a cylinder reduces its drag.
 
-    The factor is linear in the logarithm of L/D between the points of a table, and constant for L/D
-    below 1 and above 100.
-
-    Parameters
-    ----------
-    slenderness : length over diameter L/D [-]
+    κ is linear in log(L/D) between the points of a table, and constant for L/D below 1 and above
+    100. `slenderness` is L/D.
 
     Source: DNV-RP-C205 table 6-2 (Re < 2e5); for L/D below 2, Wieselsberger (NACA report 121).
     """
@@ -82,13 +78,9 @@ def finite_length_factor(slenderness: float) -> float:
 def end_face_coefficient(slenderness: float) -> float:
     """Return the drag coefficient Ct of a cylinder in axial flow, based on its end-face area.
 
-    The coefficient is linear in L/D between 0.1 and 1.8, and constant outside this range.
+    Ct is linear in L/D between 0.1 and 1.8, and constant elsewhere. `slenderness` is L/D.
 
-    Parameters
-    ----------
-    slenderness : length over diameter L/D [-]
-
-    Source: Kritzinger's measurements on cylinders in axial flow.
+    Source: Kritzinger's measurements.
     """
     return interpolated(_END_SLENDERNESS, _END_CT, slenderness)
 
@@ -106,12 +98,10 @@ def cylinder_drag(
 ) -> tuple[float, float]:
     """Return the drag factors Kn = ½ρ Cn D L and Kt = ½ρ Ct πD²/4 of a cylinder.
 
-    By default Cn is 1.2 κ(L/D), and Ct follows from `end_face_coefficient`.
-
     Parameters
     ----------
-    diameter, length : diameter D and length L [m]
-    cn, ct : normal and tangential drag coefficients [-]
+    diameter, length : D and L [m]
+    cn, ct : drag coefficients; by default Cn = 1.2 κ(L/D), and Ct as in `end_face_coefficient`
     """
     slenderness = length / diameter
     if cn is None:
@@ -122,10 +112,9 @@ def cylinder_drag(
 
 
 def line_drag(diameter: float, cn: float, ct: float) -> tuple[float, float]:
-    """Return the drag factors per metre of a cable with diameter D [m].
+    """Return the drag factors of a cable per metre, Kn = ½ρ Cn D and Kt = ½ρ Ct πD.
 
-    They are Kn = ½ρ Cn D for the flow normal to the cable, and Kt = ½ρ Ct πD for the tangential
-    flow.
+    The diameter D is in m.
     """
     return _HALF_DENSITY * cn * diameter, _HALF_DENSITY * ct * pi * diameter
 
@@ -144,17 +133,14 @@ def measured_drag(speeds: Sequence[float], forces: Sequence[float]) -> float:
 
 
 class Friction(Enum):
-    """Tangential drag law of a cable or chain.
+    """Tangential drag law of a cable or chain; the value is the name of the law in files.
 
-    The value of a member is the name of the law in files. V is the current, t the unit vector along
-    the cable, and Vt = (V·t) t. The drag per metre is
+    Drag per metre, with current V, unit vector t along the cable, and Vt = (V·t) t:
 
-    - ``berteaux``: Kt |Vt| Vt, along the cable, with Kt = ½ρ Ct πD (Berteaux, Buoy Engineering,
-      1976);
-    - ``hoerner``: Kt |V| V, along the current, with the same Kt (Hoerner, Fluid-Dynamic Drag,
-      1965);
-    - ``constant``: Kt |V|² at any angle, along the cable and in the direction of Vt, with
-      Kt = Ct ½ρ Cn D (Pode, David Taylor Model Basin report 687, 1951).
+    - ``berteaux``: Kt |Vt| Vt, with Kt = ½ρ Ct πD (Berteaux, Buoy Engineering, 1976);
+    - ``hoerner``: Kt |V| V, with the same Kt (Hoerner, Fluid-Dynamic Drag, 1965);
+    - ``constant``: Kt |V|² in the direction of Vt, with Kt = Ct ½ρ Cn D (Pode, David Taylor Model
+      Basin report 687, 1951).
     """
 
     BERTEAUX = "berteaux"
@@ -171,11 +157,10 @@ BERTEAUX, HOERNER, CONSTANT = (friction.law for friction in Friction)
 
 
 def turning_friction(law: int, kt: float, u: float, v: float, w: float) -> float:
-    """Return the coefficient [N/(m/s)] of a tangential drag that acts along the current.
+    """Return the coefficient of a tangential drag that acts along the current [N/(m/s)].
 
-    The coefficient times the current u, v, w [m/s] is the force. Unlike friction along the cable,
-    this force rotates the cable. The coefficient is 0 for laws whose friction acts along the cable.
-    Kt is in N/(m/s)².
+    The drag is the coefficient times the current u, v, w [m/s]. The coefficient is 0 for laws whose
+    drag acts along the cable. Kt is in N/(m/s)².
     """
     return kt * sqrt(u * u + v * v + w * w) if law == HOERNER else 0.0
 
@@ -203,19 +188,15 @@ Vector = tuple[float, float, float]
 def drag_share(ax: float, ay: float, az: float, k: float, vx: float, vy: float, vz: float) -> float:
     """Return the factor c for which the axis of a freely rotating element is parallel to A + c V.
 
-    V is the current. A is the force that rotates the element, without the normal drag. c is the
-    smallest non-negative root of c |A + c V| = k |V × A|.
+    c is the smallest root of c |A + c V| = k |V × A|, from 0 to k|V| [N/(m/s)]. Up to three roots
+    exist if the angle between A and -V is less than 19.5°. The smallest root applies to a current
+    that increases from rest.
 
     Parameters
     ----------
-    ax, ay, az : force A [N]
-    k : half the normal drag factor of the element, Kn/2 [N/(m/s)²]
+    ax, ay, az : force A that rotates the element, without the normal drag [N]
+    k : half the normal drag factor, Kn/2 [N/(m/s)²]
     vx, vy, vz : relative current V [m/s]
-
-    Returns
-    -------
-    c [N/(m/s)], between 0 and k|V|. If the angle between A and -V is less than 19.5°, there may be
-    three roots; the smallest root applies when the current increases from rest.
     """
     vv = vx * vx + vy * vy + vz * vz
     if k == 0.0 or vv == 0.0:
@@ -258,11 +239,10 @@ def drag_share(ax: float, ay: float, az: float, k: float, vx: float, vy: float, 
 
 
 def share_step(aa: float, av: float, vv: float, target: float, c: float) -> Vector:
-    """Return three quantities for a Newton step towards c |A + c V| = target.
+    """Return three quantities for a Newton step in c towards c |A + c V| = target.
 
-    These are the excess of c |A + c V| over the target, the magnitude |A + c V|, and the product of
-    this magnitude with the derivative of c |A + c V| with respect to c. `aa`, `av` and `vv` are the
-    products A·A, A·V and V·V.
+    The quantities are c |A + c V| - target, |A + c V|, and |A + c V| times the derivative of
+    c |A + c V|. `aa`, `av` and `vv` are A·A, A·V and V·V.
     """
     square = aa + c * (2.0 * av + c * vv)
     root = sqrt(square)
@@ -281,12 +261,11 @@ def few_steps_share(
     vz: float,
     steps: int,
 ) -> tuple[float, float]:
-    """Approximate `drag_share` by a few Newton steps, if drag rotates the element only slightly.
+    """Approximate `drag_share` by a few Newton steps, for an element that drag hardly rotates.
 
     Parameters
     ----------
-    size : approximate |A| [N]; the initial estimate neglects the rotation by drag
-    steps : number of Newton steps, at least 1
+    size : approximate |A + c V| [N], for the initial estimate of c
 
     Returns
     -------
@@ -309,9 +288,9 @@ def few_steps_share(
 def axis_along(
     ax: float, ay: float, az: float, c: float, vx: float, vy: float, vz: float
 ) -> Vector:
-    """Return the unit axis opposite to the force A + c V, from the free end towards the fixed end.
+    """Return the unit axis of an element, opposite to the force A + c V.
 
-    If the force vanishes, the axis is parallel to the current, or vertical in still water.
+    If the force vanishes, the axis is parallel to the current, or points down in still water.
     """
     x, y, z = ax + c * vx, ay + c * vy, az + c * vz
     if x * x + y * y + z * z == 0.0:

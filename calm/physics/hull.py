@@ -37,7 +37,7 @@ class Hull:
     height : height from keel to top [m]
     area : lateral area of the whole hull [m²]
     form : SPHERE, SPAR or TABULATED
-    rows : rows of the hull table if the form is TABULATED
+    rows : hull table of a TABULATED hull
     """
 
     height: float
@@ -46,10 +46,9 @@ class Hull:
     rows: tuple[HullRow, ...] = ()
 
     def curve(self, share: float) -> tuple[float, float]:
-        """Return the draft and the immersed lateral area of a partly immersed hull.
+        """Return draft and immersed lateral area, as fractions of the values for the whole hull.
 
-        `share` is the displaced volume. All quantities are fractions of the values for the whole
-        hull.
+        `share` is the immersed fraction of the volume.
         """
         return immersed_shares(self.form, self.rows, share)
 
@@ -70,14 +69,13 @@ def cylindrical_hull(diameter: float, length: float) -> Hull:
 def tabulated_hull(rows: Sequence[tuple[float, float, float]]) -> Hull:
     """Return a hull from rows of draft [m], displaced volume [m³] and immersed area [m²].
 
-    Drafts and volumes must increase from row to row, and areas must not decrease. Values are
-    interpolated linearly between the rows, and between zero and the first row. The last row
-    describes the completely immersed hull.
+    Values are interpolated linearly between zero, the first row, and the following rows. The last
+    row describes the completely immersed hull.
 
     Raises
     ------
     ValueError
-        Drafts or volumes do not increase, or areas decrease.
+        Drafts or volumes do not increase from row to row, or areas decrease.
     """
     if not rows:
         raise ValueError("the table of a hull has no rows")
@@ -94,7 +92,7 @@ def tabulated_hull(rows: Sequence[tuple[float, float, float]]) -> Hull:
 
 
 def immersed_shares(form: int, rows: Sequence[HullRow], share: float) -> tuple[float, float]:
-    """Return the draft and the immersed area, as fractions of the values for the whole hull.
+    """Return draft and immersed lateral area, as fractions of the values for the whole hull.
 
     Parameters
     ----------
@@ -125,10 +123,10 @@ class Riding(NamedTuple):
     Attributes
     ----------
     draft, freeboard : draft and freeboard [m]; NaN if the hull is unknown
-    standing : fraction of the float's height that is above the water
-    above : fraction out of the water, 0 to 1, of the pieces rigidly connected above the float
+    standing : fraction of the float's height above the water
+    above : fraction (0 to 1) out of the water of the pieces rigidly connected above the float
     drag : drag at the surface divided by the drag when fully immersed
-    push_east, push_north : wind force to the east and north [N]
+    push_east, push_north : wind force [N]
     """
 
     draft: float
@@ -151,13 +149,13 @@ class Floating:
 
     Attributes
     ----------
-    hull : hull of the float; None if the hull, and therefore the draft, is unknown
+    hull : hull of the float; None if the draft is unknown
     weight : weight in air [N]
     lift : net buoyancy when fully immersed [N]
-    surface_drag : drag at the surface divided by the drag when fully immersed; None means that the
-        drag is proportional to the immersed area
+    surface_drag : drag at the surface divided by the drag when fully immersed; None for the
+        immersed fraction of the area
     wind : wind velocity to the east and north [m/s]
-    wind_area : area exposed to the wind [m²]; if None, the area of the hull above the water is used
+    wind_area : area exposed to the wind [m²]; None for the hull above the water
     wind_cd : drag coefficient of the area exposed to the wind
     """
 
@@ -177,8 +175,7 @@ class Floating:
     def riding(self, used: float) -> Riding:
         """Compute the draft of the float at the surface, and the forces on the float.
 
-        `used` is the downward pull of the line divided by the net buoyancy of the immersed float, 0
-        to 1.
+        `used` is as in `riding_of`.
         """
         return riding_of(self.as_numbers, self.hull.rows if self.hull else (), used)
 
@@ -230,13 +227,10 @@ UNKNOWN_FLOAT = SurfaceFloat(UNKNOWN_HULL, nan, 0.0, 0.0, 1.0, nan, 0.0, 0.0, na
 def riding_of(floats: SurfaceFloat, rows: Sequence[HullRow], used: float) -> Riding:
     """Compute the draft of a float at the surface, and the forces on the float.
 
-    The displaced water carries the weight of the float and the pull of the line. The pull is the
-    fraction `used` of the net buoyancy `lift` of the immersed float. The immersed fraction of the
-    volume is therefore (weight + used · lift)/(weight + lift).
+    The immersed fraction of the hull's volume is (weight + used · lift)/(weight + lift).
 
     Parameters
     ----------
-    floats : properties of the float
     rows : rows of the hull table of the float
     used : downward pull of the line divided by the net buoyancy of the immersed float, 0 to 1
     """

@@ -1,10 +1,9 @@
 """Translation of the physics functions ("laws") to LLVM instructions.
 
 A law uses only numbers, named tuples, sequences of numbers or named tuples, and functions of
-`math`, so that all types follow from the arguments of the law. The operations are translated one by
-one, in the same order and with the same meaning as in Python; LLVM must not rearrange them.
-
-Named tuples are passed by their address, since no law changes one. Indices are not checked.
+`math`. All types follow from the arguments of the law. Operations keep their order and their
+meaning in Python. Indices are not checked. Named tuples are passed by address, since no law changes
+a named tuple.
 """
 
 import ast
@@ -63,9 +62,7 @@ def _functions_in(path: str) -> dict[str, ast.FunctionDef]:
 
 
 def _bound_once(tree: ast.FunctionDef) -> tuple[set[str], set[str]]:
-    """Return two sets of names: the names that are read, and the names that a single statement sets
-    before all statements that read them.
-    """
+    """Return the names that are read, and the names that one statement sets before any reading."""
     set_at: dict[str, list[Any]] = {each.arg: [((0, -1),)] for each in tree.args.args}
     read_at: dict[str, list[Any]] = {}
 
@@ -143,10 +140,10 @@ class Program:
         return self.laws[law, kinds]
 
     def add_entry(self, symbol: str, law: Law, kinds: tuple[Any, ...], wanted: Any) -> None:
-        """Add a function that calls a law; the arguments and the result are in memory.
+        """Add a function that calls a law, with arguments and result in memory.
 
-        The first argument of the function is the address of the law's arguments. The second
-        argument is the address of the result. The result is converted to the kind `wanted`.
+        The function takes two addresses: the address of the law's arguments, and the address of the
+        result, which is converted to the kind `wanted`.
         """
         given = Held(Row(None, kinds), "%given")
         entry = Instructions(self)
@@ -190,8 +187,9 @@ RESULT = "return"
 class _Body(Instructions):
     """Translation of the body of a law.
 
-    `known` holds the kinds of the variables and of the result. If a later statement widens a kind,
-    for example from whole to real numbers, `widened` is true and the law is translated again.
+    `known` holds the kinds of the variables and of the result. `widened` is true if a later
+    statement needs a wider kind, for example real instead of whole numbers. The law is then
+    translated again.
     """
 
     def __init__(
@@ -384,8 +382,8 @@ class _Body(Instructions):
     def finish(self, node: Any, ends: bool, over: str, end: str) -> bool:
         """Translate the `else` part of a loop, and begin the code after the loop.
 
-        `over` is the label that a loop without `break` reaches, and `ends` is whether a loop can
-        end in this way. Return whether the next statement can be reached.
+        `over` is the label at which the loop ends without `break`, if `ends` is true. Return
+        whether the next statement can be reached.
         """
         if ends:
             self._start(over)
@@ -486,7 +484,7 @@ class _Body(Instructions):
         return self.given(found)
 
     def given(self, value: Any) -> Any:
-        """Return a value that is known before the law runs."""
+        """Convert a global number, tuple, function, class or module for use in a law."""
         if isinstance(value, (bool, int, float)):
             return number_of(value)
         if isinstance(value, tuple):
@@ -626,9 +624,9 @@ class _Body(Instructions):
         return gap
 
     def one_of(self, values: list[Any], later: list[list[str]]) -> Any:
-        """Return the value of the branch that is followed.
+        """Merge the values of several branches into the value of the branch that runs.
 
-        Each value is written at the place in `later` that was left for this value.
+        The value of each branch is written at the branch's place in `later`.
         """
         kind = values[0].kind
         for each in values:
@@ -721,7 +719,7 @@ class _Body(Instructions):
         return self.lesser(self.value(WHOLE, f"sub nsw i64 0, {value.text}"), value, "sgt")
 
     def lesser(self, one: Number, other: Number, order: str) -> Number:
-        """Return the number that comes first in an order."""
+        """Return the whole number that comes first in LLVM's order `slt` or `sgt`."""
         test = self.value(TRUTH, f"icmp {order} i64 {one.text}, {other.text}")
         return self.value(WHOLE, f"select i1 {test.text}, i64 {one.text}, i64 {other.text}")
 

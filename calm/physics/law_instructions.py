@@ -1,4 +1,4 @@
-"""Values of a law in LLVM's language, and the instructions that read, write and convert them."""
+"""Values of a law in LLVM's language, and instructions to read, write and convert values."""
 
 import builtins
 import struct
@@ -54,7 +54,7 @@ class ArrayView(NamedTuple):
 class Global(NamedTuple):
     """A function, class or module to which the source of a law refers.
 
-    If a law passes a function to another law, the other law is translated for this function.
+    If a law receives a function as an argument, the law is translated separately for each function.
     """
 
     value: Any
@@ -211,7 +211,7 @@ class Instructions:
         return self.value(kind, f"{how[value.kind, kind]} {value.kind} {value.text} to {kind}")
 
     def address_of(self, row: Any) -> str:
-        """Return the address of a tuple. The tuple is written to memory if it is not there yet."""
+        """Return the address of a tuple, which is written to memory if necessary."""
         if isinstance(row, Held):
             return row.address
         address = self.reserve(row.kind)

@@ -1,7 +1,7 @@
 """Kinds of the values of compiled laws, and their layout in memory.
 
 Every number takes eight bytes. A sequence is represented by the address of its first number and by
-its shape. A named tuple is a row of numbers, whether it is a value or an element of a sequence.
+its shape. A named tuple is a row of numbers.
 """
 
 import ctypes
@@ -163,7 +163,7 @@ def _address_of_array(array: Any) -> int:
 
 _pointer_at = ctypes.c_void_p.from_address
 _DATA = object.__basicsize__
-"""Offset of the address of the data in an array object. numpy's C interface fixes it as the first
+"""Offset of the data address in an array object; in numpy's C interface, the address is the first
 field. The attribute `ctypes.data` takes thirty times as long, and a solve passes thirty arrays.
 """
 _NAMES = {"address_of": _address_of_array}

@@ -28,15 +28,15 @@ if TYPE_CHECKING:
 class MarchError(ArithmeticError):
     """Raised if a march cannot continue.
 
-    A march stops if the forces or moments on an element do not balance, if the line extends without
-    limit, or if the line needs too many segments.
+    The reason is an element out of balance, a line that extends without limit, or a line that needs
+    too many segments.
     """
 
 
+# a bare tuple, because creating a named tuple takes half as long as the balance of a segment
 State = tuple[float, float, float, float, float, float, float, int]
-"""State of a march, x, y, z, fx, fy, fz, tz and level: position [m], force above it [N], vertical
-component of the last axis, and interval of the water. It is a bare tuple, because creating a named
-tuple in CPython takes half as long as the balance of a segment.
+"""State of a march (x, y, z, fx, fy, fz, tz, level): position [m], force above this position [N],
+vertical component of the last axis, and interval of the water profile.
 """
 
 GOES_ON, RUNS_OFF, SEGMENT_UNBALANCED, ROD_UNBALANCED, ENDLESS, NO_ROOM = range(6)
@@ -55,13 +55,13 @@ NO_BALANCE = -2.0
 
 
 class Bed(NamedTuple):
-    """Plane seabed below an anchor, with the friction on a line that lies on the seabed.
+    """Plane seabed at an anchor, with the friction on a line that lies on the seabed.
 
     Attributes
     ----------
-    east, north : slope of the seabed, as the increase in depth per metre to the east and north [-]
-    friction : friction coefficient along a line on the seabed [-]
-    excess : buoyancy per displaced cubic metre, minus the value in reference water [N/m³]
+    east, north : increase in depth per metre to the east and north [-]
+    friction : friction coefficient between line and seabed [-]
+    excess : buoyancy per displaced volume, minus the value in reference water [N/m³]
     """
 
     east: float
@@ -73,9 +73,8 @@ class Bed(NamedTuple):
 def off_bed(bed: Bed, x: float, y: float, z: float) -> float:
     """Return the height of a point above the seabed plane.
 
-    x, y, z are the coordinates of the point relative to any point on the plane. If x, y, z are the
-    components of a force, the result is the component of the force normal to the plane, times
-    √(1 + tan² slope).
+    x, y, z are relative to any point on the plane. If x, y, z is a force, the result is the force
+    normal to the plane times √(1 + tan² slope).
     """
     return z + bed.east * x + bed.north * y
 
@@ -98,13 +97,17 @@ SEGMENT, BETTER = 10, 11
 extrapolated positions and forces.
 """
 NO_SEGMENT, ENDS, HALVES, SPLITS = range(4)
-"""Kinds of an element's end: not part of a segment off the seabed; end of a segment; middle of a
-part that is marched in two halves; level that splits a segment.
+"""Kinds of an element's end:
+
+- NO_SEGMENT: not part of a segment off the seabed;
+- ENDS: end of a segment;
+- HALVES: middle of a part that is marched in two halves;
+- SPLITS: level that splits a segment.
 """
 
 
 def write_node(record: Record, n: int, state: State) -> None:
-    """Write the position [m] of a state, and the force above it [N], to node n of a record."""
+    """Write position [m] and force above the position [N] of a state to node n of a record."""
     x, y, z, fx, fy, fz, _, _ = state
     record[0][n] = x
     record[1][n] = y
@@ -130,16 +133,15 @@ def write_element(
 
 @dataclass(frozen=True)
 class Trace:
-    """Shape of a line from a recorded march, with k + 1 nodes from the free end on, and k elements.
+    """Recorded shape of a line: k + 1 nodes from the free end on, and k elements between them.
 
     Attributes
     ----------
-    position : (k+1, 3) position of each node [m]
-    force : (k+1, 3) force above each node [N]
-    piece, clamp : (k,) indices of the piece and the clamp of each element; the clamp is -1 if the
-        element is part of the piece itself
-    cut : (k,) unstretched length of each element [m]
-    strain : (k,) strain of each element; 0 for rigid pieces and clamps
+    position, force : (k+1, 3) position of each node [m], and force above the node [N]
+    piece, clamp : (k,) index of the piece, and of the clamp, of each element; clamp -1 for the
+        piece itself
+    cut, strain : (k,) unstretched length [m] and strain of each element; strain 0 for rigid pieces
+        and clamps
     better : (k+1, 6) extrapolated position [m] and force [N] of each node, if the shape was refined
     """
 
@@ -195,10 +197,9 @@ _Made = TypeVar("_Made")
 
 
 def once_per_input(make: Callable[[_Given], _Made]) -> Callable[[_Given], _Made]:
-    """Decorate a function of a `Line` or `Water` so that its result is stored in this object.
+    """Decorate a function of a `Line` or `Water` so that each object stores its result.
 
-    The function is then called only once for each object. This is valid because these objects do
-    not change.
+    The function is called only once for each object, because the objects do not change.
     """
     name = f"{make.__module__}.{make.__qualname__}"
 
@@ -214,9 +215,9 @@ def once_per_input(make: Callable[[_Given], _Made]) -> Callable[[_Given], _Made]
 
 
 def once_at_rest(make: Callable[[Line, Water], _Made]) -> Callable[[Line, Water], _Made]:
-    """Decorate a function of a line and its water whose result does not depend on the current.
+    """Decorate a function of a line and of water, whose result does not depend on the current.
 
-    The last result is stored in the line. It is used again in all water that is the same at rest.
+    The line stores the latest result, for all water with the same depth, density and gravity.
     """
     name = f"{make.__module__}.{make.__qualname__}"
 
@@ -237,7 +238,7 @@ _OfArrays = TypeVar("_OfArrays", bound=_Arrays)
 
 
 def _of_arrays(made: type[_OfArrays]) -> type[_OfArrays]:
-    """Decorate a dataclass so that it converts its arguments to the array types of its fields.
+    """Decorate a dataclass to convert arguments to the array types of the fields.
 
     Raises ValueError if an array has a value that is not finite.
     """
@@ -295,46 +296,41 @@ _CURVES = ("elongation", "drag_curve", "clamp_drag_curve")
 @_of_arrays
 @dataclass(frozen=True)
 class Line(_Arrays):
-    """The n pieces of a line, and the m instruments clamped on these pieces.
+    """The n pieces of a line, and the m instruments clamped on the pieces.
 
-    The pieces of a mooring are listed from the free end to the anchor, and the pieces of a tow from
-    the ship to the towed body.
-
-    Buoyancies and drags refer to sea water with a density of 1025 kg/m³. For `flexible` pieces
-    (cable, chain), `buoyancy`, `volume` and drags are per unstretched metre.
+    A mooring is listed from the free end to the anchor, a tow from the ship to the towed body.
+    Buoyancies and drags refer to sea water of 1025 kg/m³. For cables and chains, `buoyancy`,
+    `volume` and drags are per unstretched metre.
 
     Attributes
     ----------
     length : (n,) unstretched length [m]
-    flexible : (n,) True for a cable or chain, which is divided into segments; False for a rigid
-        piece
+    flexible : (n,) True for a cable or chain, False for a rigid piece
     buoyancy : (n,) net buoyancy, positive up [N or N/m]
-    volume : (n,) displaced volume [m³ or m³/m], which determines how the buoyancy varies with the
-        density of the water; 0 if unknown
+    volume : (n,) displaced volume [m³ or m³/m]; 0 if unknown
     normal_drag, tangential_drag : (n,) Kn and Kt [N/(m/s)², per metre if flexible]
     directional : (n,) False if the drag is Kn|V|V for any direction of the flow
     compliance : (n,) compliance 1/EA [1/N]; 0 if the piece is inextensible
-    thinning : (n,) exponent in the factor (1 + strain)**thinning by which the drag per unstretched
-        metre grows; 1/2 if the volume is conserved (cables), 0 for chains
-    clamp_piece : (m,) index of the piece to which each instrument is clamped
-    clamp_at : (m,) distance from the top of that piece along its unstretched length [m]
+    thinning : (n,) exponent of 1 + strain in the drag per unstretched metre: 1/2 for cables
+        (constant volume), 0 for chains
+    clamp_piece : (m,) index of the piece that carries the instrument
+    clamp_at : (m,) unstretched distance of the instrument from the top of this piece [m]
     clamp_buoyancy, clamp_volume, clamp_drag : (m,) net buoyancy [N], displaced volume [m³], and
-        drag factor K, where the drag is K|V|V [N/(m/s)²]
+        factor K of the drag K|V|V [N/(m/s)²]
     anchor_height : height of the end of the line above the seabed [m]
-    lift, clamp_lift : (n,), (m,) hydrodynamic lift at 1 m/s, positive up [N/(m/s)²]; 0 by default
-    diameter : (n,) diameter of cables and chains [m]; 0, the default, means no strumming
+    lift, clamp_lift : (n,), (m,) hydrodynamic lift at 1 m/s, positive up [N/(m/s)²]; default 0
+    diameter : (n,) diameter of cables that may strum [m]; default 0
     friction : tangential drag law of cables and chains
-    strumming : strumming law of the cables, or None. With a strumming law, `normal_drag` is the
-        drag without strumming
-    towed : whether the free end is towed; rigid pieces at a towed end are not rigidly connected to
-        each other
-    push_east, push_north : (n,) force of the wind on a piece [N]; 0 by default
+    strumming : strumming law that increases `normal_drag` of the cables, or None
+    towed : whether the free end is towed; rigid pieces at a towed end do not form one rigid body
+    push_east, push_north : (n,) force of the wind [N]; default 0
     floating : surface properties of the first float; if None, a float that reaches the surface is
         placed just below the surface
-    elongation : (n,) elongation curves of cables, which replace their `compliance`; None for other
-        pieces; () if no cable has a curve
-    drag_curve, clamp_drag_curve : (n,), (m,) curves of the normal drag of smooth spheres and
-        cylinders against Reynolds number; None for other bodies; () if there are no curves
+    elongation : (n,) elongation curves of cables, instead of `compliance`
+    drag_curve, clamp_drag_curve : (n,), (m,) normal drag of smooth spheres and cylinders against
+        Reynolds number
+
+    Tuples of curves have None for pieces or clamps without a curve, and may be empty.
     """
 
     length: Floats
@@ -407,10 +403,8 @@ class Line(_Arrays):
     def net_force(self, excess: Floats) -> Floats:
         """Return the net buoyancy (n,) of each whole piece with its clamps [N].
 
-        Parameters
-        ----------
-        excess : (n,) buoyancy per displaced cubic metre, minus the value in reference water
-            [N/m³]
+        `excess` (n,) is the buoyancy per displaced volume, minus the value in reference water
+        [N/m³].
         """
         whole = np.where(self.flexible, self.length, 1.0)
         total: Floats = (self.buoyancy + excess * self.volume) * whole
@@ -471,21 +465,20 @@ class Line(_Arrays):
 @_of_arrays
 @dataclass(frozen=True)
 class Water(_Arrays):
-    """Depth of the sea, and current and density at given depths, which are called levels.
+    """Water depth, and profiles of current, density and viscosity.
+
+    Profiles are linear between levels, and constant above the first and below the last level.
 
     Attributes
     ----------
-    depth : water depth [m]; infinite if there is no seabed (for a tow)
-    level : (k,) depths of the levels [m], strictly increasing, k ≥ 1
+    depth : water depth [m]; infinite if there is no seabed
+    level : (k,) depths of current and density [m], strictly increasing, k ≥ 1
     u, v, w : (k,) components of the current to the east, to the north, and upward [m/s]
     density : (k,) density [kg/m³]
     gravity : acceleration of gravity [m/s²]
-    deeper_east, deeper_north : increase in depth of the seabed per metre east and north of the
-        anchor [-]
-    viscosity_level, viscosity : (j,), (j,) strictly increasing depths [m], and the kinematic
-        viscosity at these depths [m²/s], for drag that depends on the Reynolds number
-
-    Values are linear between levels, and constant above the first and below the last level.
+    deeper_east, deeper_north : increase in depth of the seabed per metre east and north [-]
+    viscosity_level, viscosity : (j,) depths [m], strictly increasing, and kinematic viscosity
+        [m²/s]
     """
 
     depth: float

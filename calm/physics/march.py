@@ -66,9 +66,9 @@ class End:
 
     Attributes
     ----------
-    z, force : height of the end above the sea surface [m], and force just above the end [N]
+    z, force : height above the sea surface [m], and force just above the end [N]
     cuts : segments used
-    record, nodes : record of the march, and number of nodes in the record
+    record, nodes : record of the march, and number of recorded nodes
     """
 
     z: float
@@ -94,22 +94,21 @@ def march(
     record: bool = False,
     compiled: bool = False,
 ) -> End:
-    """Integrate down a line from a free end at a given depth.
+    """Integrate down a line from a free end at a given depth [m].
 
     Parameters
     ----------
-    depth : depth of the free end [m]
     angle_step : largest rotation of a segment [rad]
     reach : largest length of a segment [m]
-    cuts : the segments to use; None lets the march choose them
+    cuts : segments to use; if None, the march chooses the segments
     record : whether to record every node and element
-    compiled : whether to run compiled code; otherwise the code is interpreted
+    compiled : whether to run compiled instead of interpreted code
 
     Raises
     ------
     MarchError
-        The forces or moments on an element do not balance, or a cable needs more than 50 000
-        segments.
+        Forces or moments on an element do not balance, the line extends without limit, or a cable
+        needs more than 50 000 segments.
     """
     course, sea = (track.packed, profile.packed) if compiled else (track.course, profile.sea)
     stages, level, known = len(course.stages), Bed(0.0, 0.0, 0.0, 0.0), cuts is not None

@@ -20,14 +20,12 @@ class Material:
     Attributes
     ----------
     name : name in files
-    words : regular expression that matches common names of the material, from the beginning of a
-        word
+    words : regular expression for common names of the material, from the beginning of a word
     family : `metal` (corrodes), `fibre` (stretches) or `other`
-    density : density of the solid [kg/m³]; None if the density varies
-    potential : midpoint of the range of the corrosion potential in sea water [V]
-    stiffnesses : pairs a, b for published stiffnesses EA = (a + b D) D² of ropes with diameter D
-    strength : largest tensile strength of rope wire or yarn [Pa]; None if no ropes are made of this
-        material
+    density : density of the solid [kg/m³]; None if variable
+    potential : middle of the range of corrosion potentials in sea water [V]
+    stiffnesses : pairs a, b of published stiffnesses EA = (a + b D) D² of ropes with diameter D
+    strength : largest tensile strength of rope wire or yarn [Pa]; None if not used in ropes
     """
 
     name: str

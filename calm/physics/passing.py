@@ -1,13 +1,11 @@
 """Integration (march) down a line from its free end, stage by stage, as functions to compile.
 
-A march starts at a given position of the free end, on which no force acts from above, and returns
-position and force at the other end. `calm.solve` searches for the start from which this end meets
-the anchor.
+A march starts at a given position of the free end, without force from above, and returns position
+and force at the other end.
 
-A cable or chain is divided into straight segments. By default the march chooses them: each segment
-rotates by about the angle step, is short against the water depth, and ends at a level of the water
-profile. If segments are given, they keep their lengths, so that the end of the line is a smooth
-function of its start. A segment that crosses a level is split there.
+Cables and chains are divided into straight segments. The march chooses segments that rotate by
+about the angle step, are short against the water depth, and end at levels of the water profile.
+Given segments keep their lengths, which makes the end of the line a smooth function of the start.
 """
 
 from collections.abc import MutableSequence
@@ -75,16 +73,15 @@ class MarchSettings(NamedTuple):
     ----------
     angle_step : largest rotation of a segment [rad]
     reach : largest length of a segment [m]
-    near : allowed error of the depth at which the water is sampled for a load [m]; 0 requires full
-        precision
+    near : allowed error of the depth at which the water is sampled [m]; 0 for full precision
     stages : number of stages to march
-    lands : whether the line may touch down. The touchdown is the point below the last buoyant piece
-        where the force normal to the seabed vanishes; the rest of the line lies on the seabed
+    lands : whether a line may touch down, below its last buoyant piece, where the force normal to
+        the seabed vanishes
     bed : the seabed
-    given : whether the segments are given; otherwise the march chooses them
-    exact : whether segments are split at every level of the water profile; otherwise they are split
-        only at levels with an appreciable effect
-    halves : whether each segment, or part of a segment, is integrated in two halves
+    given : whether the segments are given, instead of chosen by the march
+    exact : whether segments are split at every level of the water profile, even without appreciable
+        effect
+    halves : whether each part of a segment is integrated in two halves
     recording : whether every node and element is recorded
     """
 
@@ -115,12 +112,11 @@ def pass_line(
 
     Parameters
     ----------
-    out : length of line above the surface at the free end [m]; 0 if no part is above the surface.
-        If `out` is not 0, the depth of the free end is computed from `out`
+    out : length of line above the surface [m]; if not 0, the depth is computed from `out`
     cuts, counts : unstretched lengths of the segments [m], and number of segments in each cable;
-        these are input if the segments are given, otherwise output
-    record : array to which nodes and elements are written
-    left : array to which the results are written, with the indices `Z` to `FAILURE`
+        input if the segments are given, otherwise output
+    record : output of nodes and elements
+    left : output of results, with the indices `Z` to `FAILURE`
     """
     if out > 0.0:
         depth = floating_depth(course.stages[0], course.loads, sea, out, how.near)
@@ -187,12 +183,14 @@ def pass_cable(
     record: Record,
     nodes: int,
 ) -> tuple[State, float, int, int, int]:
-    """Integrate along cable number `place` of a line.
+    """Integrate along the cable with index `place` in the course.
 
     Returns
     -------
-    The state at the end of the cable; the unstretched length above the touchdown [m], or -1 without
-    touchdown; the numbers of segments and of nodes so far; and the outcome.
+    - the state at the end of the cable;
+    - the unstretched length above the touchdown [m], or -1 without touchdown;
+    - the numbers of segments and of nodes so far;
+    - the outcome.
     """
     cable, knots, vibration = course.cables[place], course.knots, course.vibration
     if vibration.beat != 0.0:
@@ -284,8 +282,7 @@ def cut_evenly(
 ) -> int:
     """Choose equal segments for a length of cable on the seabed, which is not integrated.
 
-    Return the total number of segments so far. If the array `cuts` is full, further segments are
-    counted but not written.
+    Return the total number of segments, including those that no longer fit into `cuts`.
     """
     if length <= 0.0:
         return used

@@ -23,8 +23,7 @@ with no flow.
 class Interval(NamedTuple):
     """Current u, v, w [m/s] and density [kg/m³] of the water between two levels.
 
-    Each quantity is given by its value at the depth `origin` [m] and its increase per metre of
-    depth.
+    Each quantity has a value at the depth `origin` [m] and an increase per metre of depth.
     """
 
     origin: float
@@ -58,10 +57,9 @@ class Sea(NamedTuple):
     ----------
     levels : depths that bound the intervals [m], from -inf to inf
     intervals : water in each interval
-    bends : relative change of the slopes of current and density at each level [1/m], see
-        `find_bends`
+    bends : relative change of the slopes of current and density at each level [1/m]
     gravity : acceleration of gravity [m/s²]
-    strata : kinematic viscosity in strata, from the top down; the first stratum begins at -inf
+    strata : kinematic viscosity, from the top down; the first stratum begins at -inf
     """
 
     levels: Sequence[float]
@@ -119,10 +117,8 @@ def distance_to_bend(
 ) -> float:
     """Return the distance [m] along a path to the next point where the drag has a kink.
 
-    This point is usually at the next level. The drag is proportional to |V| V, and therefore also
-    has a kink at a depth where the flow almost vanishes. Such a depth is returned if it is reached
-    before the next level and within the length of a segment. A level nearer than `LEAST_PART` times
-    the segment length is skipped, unless a segment of the full length has to be split there.
+    The drag has a kink at a level, and where the flow almost vanishes. Kinks nearer than
+    `LEAST_PART` times the segment length are skipped, except a level that has to split the segment.
 
     Parameters
     ----------
@@ -165,11 +161,8 @@ def in_interval(sea: Sea, i: int, start: float, end: float) -> bool:
 def level_within(sea: Sea, hint: int, start: float, end: float, share: float) -> int:
     """Return the index of the first level at which a straight segment has to be split, or 0.
 
-    Parameters
-    ----------
-    hint : interval at which the search for the two depths starts
-    start, end : depths of the ends of the segment [m]
-    share : see `counts_across`
+    `start` and `end` are the depths of the ends of the segment [m]. The search for the two depths
+    begins at interval `hint`. `share` is as in `counts_across`.
     """
     levels = sea.levels
     i, last = interval_at(levels, start, hint), interval_at(levels, end, hint)
@@ -185,17 +178,15 @@ def level_within(sea: Sea, hint: int, start: float, end: float, share: float) ->
 def counts_across(sea: Sea, k: int, off: float, length: float, share: float) -> bool:
     """Return whether a segment that crosses a level has to be split at the level.
 
-    The water at the midpoint of a segment represents the mean along the segment. If the slope of
-    the current changes by b at a level, the error of this mean is b·off²/(2·length). The segment
-    has to be split if twice this error exceeds the fraction `share` of the current at the level.
-    The density, which jumps at the surface for a tow, is treated in the same way.
+    Without a split, the water at the midpoint differs from the mean along the segment. If the slope
+    of the current changes by b at the level, the difference is b·off²/(2·length).
 
     Parameters
     ----------
     k : index of the level
     off : depth range of the segment on the far side of the level [m]
     length : depth range of the segment [m]
-    share : allowed error relative to the current or density [-]
+    share : twice the allowed difference, relative to the current or density [-]
     """
     return off > NEAR_A_LEVEL * length and sea.bends[k] * off * off > share * length
 
@@ -203,10 +194,7 @@ def counts_across(sea: Sea, k: int, off: float, length: float, share: float) -> 
 def find_bends(intervals: Sequence[Interval], bends: MutableSequence[float]) -> None:
     """Compute the relative change of the slopes of current and density at each level [1/m].
 
-    Parameters
-    ----------
-    intervals : intervals of the water; interval k begins at level k
-    bends : output; one value for each level from -inf to inf
+    Interval k begins at level k. The output `bends` has one value for each level from -inf to inf.
     """
     bends[0] = 0.0
     for k in range(1, len(intervals)):

@@ -1,8 +1,7 @@
 """Independent check of a march: load and moment balance of every element of a shape.
 
-All results follow from the recorded coordinates. The interpolation of the water and the laws of
-drag and friction are implemented independently of the march. Only measured curves (stretch, drag,
-strumming) are shared with the march.
+The recorded coordinates are the only input from the march. Water profile and laws of drag and
+friction are implemented anew; measured curves (stretch, drag, strumming) are shared with the march.
 """
 
 from collections.abc import MutableSequence, Sequence
@@ -26,16 +25,16 @@ a stretch of 2 %.
 
 
 class RefereeBody(NamedTuple):
-    """A piece or a clamp of a line, as the audit uses it.
+    """A piece or a clamp of a line, for the independent check.
 
     Attributes
     ----------
-    flexible, length, buoyancy, volume, normal_drag, tangential_drag, directional, compliance,
-    thinning, lift, push_east, push_north, diameter : as in `Line`
     smooth, lengthening : diameter [m] and `lengthening` of the body's `DragCurve`; 0 without a
         curve
-    first_knot, end_knot : range of the knots of the body's elongation curve; the two are equal
-        without a curve
+    first_knot, end_knot : range of the body's elongation curve in `Moored.knots`; equal without a
+        curve
+
+    Other attributes are as in `Line`.
     """
 
     flexible: int
@@ -58,7 +57,7 @@ class RefereeBody(NamedTuple):
 
 
 class Moored(NamedTuple):
-    """A line and its water, as the audit uses them.
+    """A line and its water, for the independent check.
 
     `bodies` lists the pieces, followed by the clamps. The first `head` pieces form one rod.
     `friction` is the number of a friction law, and `frequency` is the strumming frequency [Hz].
@@ -86,8 +85,8 @@ class RefereeShape(NamedTuple):
 
     Attributes
     ----------
-    record : the nodes, and for each node the element that ends at this node, see
-        `calm.physics.line`
+    record : record of the march (see `calm.physics.line`), where column n has node n and the
+        element that ends there
     nodes, hanging : number of nodes, and number of elements above the touchdown
     first, last : first and last node of every piece
     """
@@ -114,8 +113,8 @@ def element_loads(
 ) -> None:
     """Compute buoyancy, drag and wind force of every element, and write them to `loads` [N].
 
-    The load of a rigid piece is computed at the midpoint of the piece, and distributed over the
-    elements of the piece in proportion to their lengths.
+    The load of a rigid piece follows from the water at the piece's midpoint, and is distributed
+    over the elements of the piece by length.
     """
     east, north, up = loads[0], loads[1], loads[2]
     for i in range(shape.nodes - 1):
@@ -163,8 +162,7 @@ def chord(shape: RefereeShape, top: int, bottom: int) -> Vector:
 def rigid_axis(moored: Moored, shape: RefereeShape, piece: int) -> Vector:
     """Return a vector along the axis of the rod to which a rigid piece belongs.
 
-    For a rod without length, the vector is opposite to the mean of the forces at the ends of the
-    rod.
+    For a rod without length, the vector is opposite to the mean force at the ends.
     """
     top, bottom = rod_nodes(moored, shape, piece)
     x, y, z = chord(shape, top, bottom)
@@ -281,14 +279,10 @@ def worst_moment(
 ) -> float:
     """Return the largest angle between an element and the mean of the forces at its ends [rad].
 
-    The forces are sums of the loads. Elements on the seabed are excluded. For cables, the strain is
-    also compared with the strain that the forces would cause. If the largest difference between the
-    two strains exceeds the largest angle, this difference is returned instead.
-
-    The rounding error of the coordinates is subtracted from the angles and from the differences.
-    Towards a slack end the tension vanishes, so the direction of the force is undetermined. The
-    angles are therefore also reduced by the relative error of the force, which is due to rounding
-    and to the tolerance of the iterations.
+    Forces are sums of `loads`. Elements on the seabed are excluded. For cables, the difference
+    between the strain and the strain expected from the forces counts like an angle. Angles and
+    differences are reduced by the rounding error of the coordinates, and angles also by the
+    relative error of the force.
     """
     rounding = ROUNDING * greatest_size(shape, 0)
     hanging = shape.hanging
@@ -363,8 +357,7 @@ def rod_moment(
 ) -> float:
     """Return the angle between a rod of several elements and the force that rotates the rod [rad].
 
-    This force is the sum of the force above the rod and of all loads on the rod, each multiplied by
-    its lever.
+    The rod extends from node `top` to node `bottom`. (fx, fy, fz) is the force above the rod [N].
     """
     dx, dy, dz = chord(shape, top, bottom)
     length = sqrt(dx * dx + dy * dy + dz * dz)

@@ -1,8 +1,8 @@
 """Drag coefficients of smooth shapes against Reynolds number, including the drag crisis.
 
-The curves hold for clean, smooth bodies in smooth flow. Paint, fittings and biofouling shift the
-crisis or remove it: a 1 m float in 0.5 m/s has Cx = 0.1 as a smooth sphere, while 0.5 to 0.65 is
-used for real floats. Hence CALM uses the curves only for components declared smooth.
+The curves hold for clean, smooth bodies in smooth flow, and CALM uses the curves only for
+components declared smooth. Paint, fittings and biofouling shift or remove the crisis. At 0.5 m/s, a
+1 m float has Cx = 0.5 to 0.65 in practice, and 0.1 as a smooth sphere.
 """
 
 from dataclasses import dataclass
@@ -14,11 +14,11 @@ from calm.physics.drag import LONG_CYLINDER_CN, SPHERE_CX, finite_length_factor,
 
 # fmt: off
 _CYLINDER = (
-    # measurements by Wieselsberger
+    # measurements by Wieselsberger; from 3e4 on, 2 to 4 % below DNV's recommendation
     (3.18, 4.87), (8.01, 2.94), (17.7, 2.12), (31.7, 1.73), (63.6, 1.48), (196, 1.27),
     (356, 1.15), (892, 0.964), (2.27e3, 0.886), (5.15e3, 0.944), (9.18e3, 1.06), (1.5e4, 1.14),
     (3.03e4, 1.16), (6.55e4, 1.17), (1.07e5, 1.17), (1.61e5, 1.18),
-    # recommendation by DNV
+    # recommendation by DNV; Roshko (1961) found 0.7 above 3.5e6
     (2.1e5, 1.21), (2.31e5, 1.20), (2.72e5, 1.17), (2.97e5, 1.11), (3.25e5, 1.01), (3.62e5, 0.894),
     (4.10e5, 0.709), (4.75e5, 0.532), (5.25e5, 0.408), (5.79e5, 0.327), (6.38e5, 0.284),
     (7.44e5, 0.297), (1.07e6, 0.389), (1.39e6, 0.470), (1.83e6, 0.539), (2.26e6, 0.584),
@@ -34,6 +34,7 @@ _KAPPA_AT, _KAPPA = (
     tuple(log(slenderness) for slenderness, _ in _KAPPAS),
     tuple(k for _, k in _KAPPAS),
 )
+# DNV's table of κ has a step at 2e5; CALM interpolates in log Re, so that the drag has no step
 _KAPPA_BELOW, _KAPPA_ABOVE = 1.8e5, 2.2e5
 _CHANGE = log(_KAPPA_ABOVE / _KAPPA_BELOW)
 
@@ -49,16 +50,10 @@ def cylinder_coefficient(reynolds: float) -> float:
 
     Parameters
     ----------
-    reynolds : Reynolds number |Vn| D/ν [-]; the coefficient is constant below 3.18, where drag is
-        negligible, and above 4.94e6
+    reynolds : Reynolds number |Vn| D/ν [-]; Cn is constant below 3.18 and above 4.94e6
 
-    Up to Re = 1.61e5, where Cn is 1.18, the curve follows Wieselsberger's measurements (NACA report
-    121). From Re = 2.1e5, where Cn is 1.21, the curve follows DNV's recommendation (DNV-RP-C205,
-    figure 6-6, smooth). Between these two Reynolds numbers Cn is linear in log Re. From 3e4 to
-    1.61e5 the measurements are 2 to 4 % below the recommendation. In the drag crisis, the
-    recommended Cn falls at a higher Re than the measured Cn, which is on the safe side. The
-    recommendation also extends to higher Re. Roshko (1961) found 0.7 above 3.5e6, compared with
-    0.65 to 0.68 here.
+    Source: Wieselsberger's measurements (NACA report 121) up to Re = 1.61e5; DNV-RP-C205, figure
+    6-6, smooth, from Re = 2.1e5; linear in log Re from 1.61e5 to 2.1e5.
     """
     return interpolated(_CYLINDER_AT, _CYLINDER_CN, log(max(reynolds, _SLOWEST)))
 
@@ -68,11 +63,10 @@ def sphere_coefficient(reynolds: float) -> float:
 
     Parameters
     ----------
-    reynolds : Reynolds number |V| D/ν [-]; the coefficient is constant above 1e6, and below 0.1,
-        where drag is negligible
+    reynolds : Reynolds number |V| D/ν [-]; Cx is constant below 0.1 and above 1e6
 
-    Source: F. A. Morrison, Data correlation for drag coefficient for sphere (Michigan Technological
-    University, 2016), whose author advises Re < 1e6.
+    Source: F. A. Morrison, Data correlation for drag coefficient for sphere, Michigan Technological
+    University, 2016.
     """
     re = min(max(reynolds, _CREEPING), LARGEST_SPHERE)
     intermediate, crisis, beyond = re / 5.0, re / 2.63e5, re / 1e6
@@ -93,8 +87,8 @@ class Smooth(NamedTuple):
     Attributes
     ----------
     reynolds : Reynolds number at 1 m/s [-]
-    lengthening : for a cylinder, length factor κ(L/D) above the drag crisis divided by κ below the
-        crisis; 0 for a sphere
+    lengthening : for a cylinder, ratio of the length factors κ above and below the drag crisis; 0
+        for a sphere
     """
 
     reynolds: float
@@ -102,10 +96,9 @@ class Smooth(NamedTuple):
 
 
 def drag_variation(smooth: Smooth, speed: float) -> float:
-    """Return the ratio of the drag at a speed to the drag with a constant coefficient.
+    """Return the ratio of the drag at a normal speed [m/s] to the drag with a constant coefficient.
 
-    The speed [m/s] is the speed of the flow normal to the axis. The constant coefficient is Cx =
-    0.5 for a sphere and Cn = 1.2 κ for a cylinder.
+    The constant coefficient is Cx = 0.5 for a sphere and Cn = 1.2 κ for a cylinder.
     """
     reynolds = smooth.reynolds * speed
     if smooth.lengthening == 0.0:
@@ -122,23 +115,16 @@ def drag_variation(smooth: Smooth, speed: float) -> float:
 def varying_share(
     ax: float, ay: float, az: float, k: float, smooth: Smooth, vx: float, vy: float, vz: float
 ) -> float:
-    """Return the result of `drag_share` for a smooth element.
+    """Return the factor c of `drag_share` for a smooth element, whose drag varies with speed.
 
-    The drag coefficient of a smooth element depends on the normal speed.
+    c = k f(s) s [N/(m/s)], where the normal speed s is the smallest root of
+    s |A + k f(s) s V| = |V × A|. This root applies to a current that increases from rest. Roots
+    less than |V|/16 apart are not distinguished.
 
     Parameters
     ----------
     k : half the normal drag factor of the element for f = 1 [N/(m/s)²]
-    smooth : properties of the element, for which `drag_variation` gives f > 0 as a continuous
-        function of |Vn|
-
-    Returns
-    -------
-    c = k f(s) s [N/(m/s)] for the smallest root s = |Vn| of s |A + k f(s) s V| = |V × A|. Roots
-    less than |V|/16 apart are not distinguished. In the drag crisis, where a lower speed causes
-    more drag, an element may have two positions: inclined with a slow normal flow, or upright with
-    a fast normal flow. When the current grows from rest, the element takes the smallest root, which
-    has more drag.
+    smooth : properties of the element, from which `drag_variation` gives f > 0
     """
     speed = sqrt(vx * vx + vy * vy + vz * vz)
     cx, cy, cz = ay * vz - az * vy, az * vx - ax * vz, ax * vy - ay * vx
@@ -181,7 +167,7 @@ def _turned(
 
 @dataclass(frozen=True)
 class DragCurve:
-    """Variation of the drag of a smooth sphere or cylinder with the Reynolds number.
+    """Drag of a smooth sphere or cylinder as a function of Reynolds number.
 
     Attributes
     ----------
@@ -213,14 +199,9 @@ class DragCurve:
 def finite_length_factor_above(slenderness: float) -> float:
     """Return the length factor κ of a cylinder above the drag crisis, for Re of at least 2.2e5.
 
-    `drag.finite_length_factor` applies up to Re = 1.8e5. κ is linear in the logarithm of L/D
-    between the points of a table, and constant for L/D below 2 and above 100.
+    κ is linear in log(L/D) between the points of a table, and constant for L/D below 2 and above
+    100. `slenderness` is L/D.
 
-    Parameters
-    ----------
-    slenderness : length over diameter L/D [-]
-
-    Source: DNV-RP-C205, table 6-2, which has two columns, for Re below and above 2e5. CALM
-    interpolates κ linearly in log Re between 1.8e5 and 2.2e5, so that the drag has no step.
+    Source: DNV-RP-C205, table 6-2, for Re above 2e5.
     """
     return interpolated(_KAPPA_AT, _KAPPA, log(max(slenderness, 1.0)))

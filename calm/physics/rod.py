@@ -63,17 +63,16 @@ def pass_rod(
 
     Parameters
     ----------
-    lands : whether the seabed `bed` supports loads that the line cannot carry. The seabed supports
-        the lower end of the rod, or the whole rod if the rod would tip over
+    lands : whether the seabed supports the rod if the line cannot carry the rod
     near : as in `rod_axis`
-    record, recording, nodes : output for nodes and elements, whether to record them, and the number
-        of nodes so far
+    record, recording : output for nodes and elements, and whether to record them
+    nodes : number of nodes so far
 
     Returns
     -------
-    The state; a number that is 0 if the rod lies on the seabed, inf if the rod stands on the
-    seabed, and otherwise -1; and the number of nodes. The axis in the state is `NO_BALANCE` if the
-    rod has no balance.
+    - the state; the vertical axis is `NO_BALANCE` if no axis is in balance;
+    - -1 if the rod is off the seabed, inf if the rod stands there, 0 if the rod lies there;
+    - the number of nodes.
     """
     x, y, z, fx, fy, fz, before, level = state
     tx, ty, tz = rod_axis(rod, loads, sea, state, near)
@@ -99,11 +98,10 @@ def pass_rod(
 
 
 def floating_depth(rod: Stage, loads: Sequence[Load], sea: Sea, out: float, near: float) -> float:
-    """Return the depth of the free end of a line [m] if its top extends above the surface.
+    """Return the depth of the free end of a line [m] whose top extends above the surface.
 
-    The depth is negative. A length `out` [m] of the topmost rod is above the surface. The
-    inclination of the rod follows from its loads, which depend slightly on its depth. The rod is
-    assumed upright if its moments balance in no orientation.
+    The depth is negative. `out` is the length of the topmost rod above the surface [m]. A rod
+    without moment balance is assumed upright.
     """
     depth = -out
     for _ in range(_LEANINGS):
@@ -130,8 +128,7 @@ def _record(
 ) -> int:
     """Record a rod piece by piece.
 
-    The load of a piece is distributed along the piece, the load of a clamp acts at a point. The
-    loads of a rod are listed downwards: for every piece its own load, then the loads of its clamps.
+    The load of a piece is distributed along the piece, and the load of a clamp acts at a point.
     """
     x, y, top, fx, fy, fz, _, level = state
     z = top

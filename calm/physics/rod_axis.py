@@ -17,24 +17,18 @@ _NOTHING = 1e-12
 
 
 def rod_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State, near: float) -> Vector:
-    """Compute the axis of a rod for which the moments about its midpoint vanish.
+    """Compute the axis of a rod for which the moments about the midpoint vanish.
 
-    The axis t is parallel to F + Σ (1 - a_i/L) q_i, where F is the force above the rod, and the
-    loads q_i act at distances a_i from the top of the rod. Since the drags depend on t, the
-    equation is solved by iteration. The normal drags are replaced by the drag of a single element
-    with one current and one drag factor. At the present axis, this drag equals the sum of the
-    normal drags. Each iteration solves for the axis of this element exactly. If only one load has a
-    normal drag, the drag curve of this load is part of the exact solution. Further iterations are
-    needed only because the flow varies along the rod, or because there are several drag curves.
+    The axis is parallel to F + Σ (1 - a_i/L) q_i. F is the force above the rod, and the loads q_i
+    act at distances a_i from the top of the rod of length L.
 
     Parameters
     ----------
-    near : allowed error of the depth at which the water is sampled for a load [m]; 0 requires full
-        precision
+    near : allowed error of the depth at which the water is sampled [m]; 0 for full precision
 
     Returns
     -------
-    The unit axis. Its vertical component is `NO_BALANCE` if there is no such axis.
+    The unit axis. The vertical component is `NO_BALANCE` if no axis is in balance.
     """
     _, _, _, fx, fy, fz, rise, _ = state
     tx, ty, tz = 0.0, 0.0, rise
@@ -72,7 +66,7 @@ def lone_axis(
     """Return the axis of a rod with a single load of constant drag, by a short iteration.
 
     The iteration starts at the axis t. The vertical component of the result is `NO_BALANCE` if the
-    iteration does not converge.
+    iteration fails.
     """
     _, _, z, fx, fy, fz, _, level = state
     for _ in range(_FEW):
@@ -97,12 +91,10 @@ def lone_axis(
 def bracketed_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State) -> Vector:
     """Return the axis of a rod by bisection, if the iteration in `rod_axis` does not converge.
 
-    The iteration may fail if the water varies much along the rod. The depths of the loads, and so
-    the water at these depths, depend only on the vertical component ("rise") of the axis. In the
-    water for a rise s, the axis in balance has a rise r(s) between -1 and 1, so r(s) - s changes
-    sign. If r jumps, as for a float without net buoyancy at the upper edge of a current, the
-    bisection ends at the jump. The moment on the rod may vanish at the jump; if it does not, the
-    rise of the result is `NO_BALANCE`.
+    In water sampled at the depths for a vertical component s of the axis, the axis in balance has
+    the vertical component r(s), from -1 to 1. The bisection finds s = r(s). The vertical component
+    of the result is `NO_BALANCE` if r(s) - s jumps past zero and the moment does not vanish at the
+    jump.
     """
     low, high = -1.0, 1.0
     tx, ty, tz = 0.0, 0.0, -1.0
@@ -133,7 +125,7 @@ def _axis_in_water_at(
     ty: float,
     tz: float,
 ) -> Vector:
-    """Return the axis in moment balance, in the water at the depths that follow from a `rise`."""
+    """Return the axis of a rod in balance, in water sampled as in `_following_axis`."""
     damping, earlier = 1.0, inf
     for _ in range(_PASSES):
         x, y, z = _following_axis(rod, loads, sea, state, rise, tx, ty, tz)
@@ -154,7 +146,7 @@ def _axis_in_water_at(
 def _turning(
     rod: Stage, loads: Sequence[Load], sea: Sea, state: State, tx: float, ty: float, tz: float
 ) -> float:
-    """Return the force that rotates a rod of axis t, as a fraction of its buoyancy and drag."""
+    """Return the force that rotates a rod of axis t, relative to its buoyancy and drag."""
     _, _, z, fx, fy, fz, _, level = state
     own = 0.0
     for i in range(rod.first, rod.first + rod.size):
@@ -175,10 +167,9 @@ def _following_axis(
     ty: float,
     tz: float,
 ) -> Vector:
-    """Return the next iterate of the axis of a rod.
+    """Return the next iterate of the axis of a rod, from the axis t.
 
-    Drags are combined at the axis t, see `rod_axis`. The water is sampled at the depths that the
-    loads have for a given `rise`.
+    The water is sampled at the depths of the loads for a vertical component `rise` of the axis.
     """
     _, _, z, fx, fy, fz, _, level = state
     ax, ay, az = fx, fy, fz
@@ -211,6 +202,8 @@ def _following_axis(
             share = varied * kn * speed_across(u, v, w, tx, ty, tz)
             total += share
             gx, gy, gz = gx + share * u, gy + share * v, gz + share * w
+    # Several normal drags are replaced by the drag of one element, which equals their sum at the
+    # present axis. The axis of this element is exact.
     if normals == 1 and curve.reynolds > 0.0:
         c = varying_share(ax, ay, az, k, curve, u, v, w)
     else:
@@ -254,11 +247,8 @@ def load_force(
 ) -> Vector:
     """Return the force on a rigid piece or clamp with unit axis t [N].
 
-    The force is the sum of net buoyancy, drag, lift and wind force.
-
-    Parameters
-    ----------
-    varied : ratio of the normal drag to the drag with constant coefficients, see `load_variation`
+    The force is the sum of net buoyancy, drag, lift and wind force. `varied` is the drag ratio from
+    `load_variation`.
     """
     scale, squared = density / REFERENCE_DENSITY, u * u + v * v + w * w
     kn = varied * scale * load.normal_drag

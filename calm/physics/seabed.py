@@ -31,20 +31,17 @@ def lay_line(
 ) -> tuple[State, int, float]:
     """Lay a line on the seabed from its touchdown to the anchor.
 
-    The line is straight, in the plane of the seabed, in the direction of the force at the
-    touchdown. Towards the anchor, the tension decreases by friction. The component of the weight
-    along the line also decreases the tension if the line leads downslope, and increases the tension
-    if the line leads upslope. The tension is never negative. There is no drag. A slack line lies
-    across the slope. If the line cannot carry a rigid piece or clamp at the touchdown, this piece
-    or clamp stands on the seabed at a point.
+    The line is straight, in the direction of the force at the touchdown; a slack line lies across
+    the slope. Friction, and weight on a downslope, decrease the tension towards the anchor; weight
+    on an upslope increases the tension. There is no drag.
 
     Parameters
     ----------
-    stage, hanging : index of the stage with the touchdown, and unstretched length of this stage
-        above the seabed [m]. The length is inf for a rod or clamp that stands on the seabed, and
-        0 for a rod or clamp that lies on the seabed
-    record, recording, nodes : output for nodes and elements, whether to record them, and the number
-        of nodes so far
+    stage : index of the stage with the touchdown
+    hanging : unstretched length of this stage above the seabed [m]; inf for a rod or clamp that
+        stands on the seabed, 0 for a rod or clamp that lies on the seabed
+    record, recording : output for nodes and elements, and whether to record them
+    nodes : number of nodes so far
 
     Returns
     -------
@@ -107,10 +104,10 @@ def lay_line(
 
 
 def held_back(tension: float, hold: float) -> tuple[float, float]:
-    """Return the fraction of a part of a line that is under tension, and the tension at its end.
+    """Return the fraction of a piece of line that is under tension, and the tension at the end.
 
-    The part lies on the seabed and begins with the given tension [N]. `hold` is the decrease of the
-    tension along the whole part due to friction and slope [N].
+    The piece lies on the seabed and begins with `tension` [N]. Friction and slope decrease the
+    tension by `hold` [N] along the piece, but not below 0.
     """
     if hold <= tension:
         return 1.0, tension - hold
@@ -120,10 +117,10 @@ def held_back(tension: float, hold: float) -> tuple[float, float]:
 def lying_strain(
     cable: CableStretch, knots: Sequence[Knot], pulled: float, tension: float, left: float
 ) -> float:
-    """Return the mean strain of a part of a line on the seabed.
+    """Return the mean strain of a piece of cable on the seabed.
 
     The tension decreases linearly from `tension` to `left` [N] over the fraction `pulled` of the
-    length. The rest of the part is without tension.
+    length, and is 0 on the remaining length.
     """
     middle = 0.5 * (tension + left)
     if cable.first_knot == cable.end_knot:
@@ -141,13 +138,13 @@ def required_weight(
 ) -> Forces:
     """Return the submerged weight that a dead-weight anchor needs to stay in position [N].
 
-    The rule is W ≥ factor (V + H / friction), as in Dewey's Mooring Design & Dynamics and at WHOI.
-    The result is 0 for an anchor that the line presses onto the seabed.
+    The weight is factor (V + H / friction), but not less than 0 (Dewey, Mooring Design & Dynamics;
+    WHOI).
 
     Parameters
     ----------
-    vertical, horizontal : vertical component V (positive up) and horizontal component H of the
-        force of the line on the anchor [N]; floats or arrays
+    vertical, horizontal : force of the line on the anchor, V (positive up) and H [N]; floats or
+        arrays
     factor : safety factor against lifting and sliding [-], typically 1.5
     friction : friction coefficient between anchor and seabed [-], typically 0.6
     """
@@ -164,20 +161,14 @@ def closure(
 ) -> float:
     """Return the relative difference between the sum of the loads and the force at a line's end.
 
-    If part of the line lies on the seabed, the sum of the loads above the touchdown must have no
-    component normal to the seabed. There are two exceptions:
+    If part of the line lies on the seabed, friction and weight along the seabed are included. The
+    sum of the loads above the touchdown must then have no component normal to the seabed, with two
+    exceptions:
 
-    - a downward force is allowed at a rigid piece or clamp that stands on the seabed;
-    - an upward force is allowed at a rigid piece that lies on the seabed, if the force is less than
-      the weight of the piece.
+    - a downward force may act on a rigid piece or clamp that stands on the seabed;
+    - an upward force may act on a rigid piece or clamp that lies on the seabed.
 
-    Along the part on the seabed, friction and the component of the weight along the line are
-    included.
-
-    Parameters
-    ----------
-    loads : loads of every element, from `element_loads`
-    landed : whether the line has a part on the seabed
+    `loads` are from `element_loads`. `landed` is true if part of the line lies on the seabed.
     """
     record, end = shape.record, shape.nodes - 1
     x = y = z = whole = 0.0

@@ -18,8 +18,8 @@ REFERENCE_VISCOSITY = 1.36e-6
 """Default kinematic viscosity [m²/s], for sea water at 10 °C and salinity 35."""
 
 MID_LATITUDE = 45.0
-"""Latitude assumed if the position is unknown [degrees]. It only affects the conversion of depth to
-pressure: between the equator and a pole, the density at 5000 m differs by 0.12 kg/m³.
+"""Latitude assumed if the position is unknown [degrees]. The latitude only affects the conversion
+of depth to pressure: at 5000 m, the density differs by 0.12 kg/m³ between equator and pole.
 """
 
 SOUTHERNMOST = -86.0
@@ -27,16 +27,14 @@ SOUTHERNMOST = -86.0
 
 
 def dynamic_viscosity(temperature: ArrayLike, salinity: ArrayLike) -> NDArray[np.float64]:
-    """Return the dynamic viscosity of sea water [Pa s].
+    """Return the dynamic viscosity of sea water [Pa s] at atmospheric pressure.
 
-    The formula applies at atmospheric pressure, with an error of up to 1.5 %. The pressure in the
-    deep sea changes the viscosity by a few percent at most.
+    The error is up to 1.5 %. Deep-sea pressure changes the viscosity by a few percent at most.
 
     Parameters
     ----------
     temperature : (...) in situ temperature [°C], 0 to 180
-    salinity : (...) salinity [g/kg], 0 to 150; practical salinity, whose value is 0.5 % smaller,
-        may be used instead
+    salinity : (...) salinity [g/kg], 0 to 150, or practical salinity (0.5 % smaller)
 
     Source: Sharqawy, Lienhard & Zubair (2010), Desalination and Water Treatment 16, 354-380,
     equations 22 and 23.
@@ -68,10 +66,9 @@ def kinematic_viscosity(
 def gravity(latitude: float) -> float:
     """Return the acceleration of gravity at the sea surface [m/s²] for a latitude [degrees].
 
-    The increase of gravity with depth, 0.011 m/s² at 5000 m, is neglected.
+    The increase with depth (0.011 m/s² at 5000 m) is neglected.
 
-    Source: the international gravity formula as adopted in TEOS-10, with which the results agree to
-    1e-6 m/s².
+    Source: international gravity formula, within 1e-6 m/s² of TEOS-10.
     """
     square = sin(radians(latitude)) ** 2
     return 9.780327 * (1.0 + 0.0053024 * square - 0.0000058 * sin(radians(2.0 * latitude)) ** 2)
@@ -86,22 +83,19 @@ def density(
 ) -> NDArray[np.float64]:
     """Return the in situ density [kg/m³] from temperature, salinity and depth.
 
+    Valid for 0 to 42 g/kg, -6 to 40 °C, and down to 10 km. Without a longitude, or far inland,
+    reference composition is assumed (error in the open ocean below 0.03 kg/m³).
+
     Parameters
     ----------
     temperature : (...) in situ temperature, ITS-90 [°C]
     salinity : (...) practical salinity [-]
     depth : (...) depth below the surface [m]
-    latitude : latitude [degrees]
-    longitude : longitude [degrees]; if the longitude is not given, or is far inland, sea water of
-        reference composition is assumed, which changes the density in the open ocean by less than
-        0.03 kg/m³
+    latitude, longitude : position [degrees]
 
     Returns
     -------
-    (...) density, with the broadcast shape of the three inputs.
-
-    The formula is valid for salinities from 0 to 42 g/kg, temperatures from -6 to 40 °C, and depths
-    down to 10 km.
+    (...) density, with the broadcast shape of temperature, salinity and depth.
     """
     import gsw
 
@@ -119,13 +113,14 @@ def potential_density(
 ) -> NDArray[np.float64]:
     """Return the density of water that is raised adiabatically to the surface [kg/m³].
 
-    In stable water, this density does not decrease with depth.
+    In stable water, this density does not decrease with depth. Reference composition and latitude
+    45 are assumed.
 
     Parameters
     ----------
     temperature : (...) in situ temperature, ITS-90 [°C]
-    salinity : (...) practical salinity [-]; reference composition is assumed
-    depth : (...) original depth [m], which is converted to pressure at a latitude of 45 degrees
+    salinity : (...) practical salinity [-]
+    depth : (...) original depth [m]
     """
     import gsw
 
@@ -156,8 +151,8 @@ def absolute_density(
     depth : (...) depth below the surface [m]
     latitude : latitude [degrees]
 
-    Source: IOC, SCOR & IAPSO (2010), the thermodynamic equation of seawater; 75-term expression of
-    Roquet et al. (2015), Ocean Modelling 90, 29-43, as implemented in the library gsw.
+    Source: TEOS-10 (IOC, SCOR & IAPSO 2010), with the 75-term expression of Roquet et al. (2015),
+    Ocean Modelling 90, 29-43.
     """
     import gsw
 

@@ -14,10 +14,10 @@ _GAUSS = sqrt(1.0 / 3.0)
 
 
 class Knot(NamedTuple):
-    """A point of an elongation curve, and a cubic polynomial for the strain at higher tensions.
+    """Point of an elongation curve (interpolation knot).
 
-    The strain is a + x (b + x (c + x d)), where x is the tension minus the tension at the point
-    [N].
+    Up to the next point, the strain is a + x (b + x (c + x d)), where x is the tension minus
+    `tension` [N].
     """
 
     tension: float
@@ -30,8 +30,8 @@ class Knot(NamedTuple):
 def curve_strain(knots: Sequence[Knot], first: int, end: int, tension: float) -> float:
     """Return the strain of a rope at a tension ≥ 0 [N].
 
-    The knots of the rope's curve have the indices from `first` to `end` - 1. Between the knots, the
-    strain is a monotone cubic interpolation; above the last knot, it is extrapolated linearly.
+    The rope's elongation curve has the knots `first` to `end` - 1. The strain is interpolated by
+    monotone cubics, and linear above the last knot.
     """
     knot = knots[_knots_below(knots, first + 1, end, tension) - 1]
     x = tension - knot.tension
@@ -41,10 +41,10 @@ def curve_strain(knots: Sequence[Knot], first: int, end: int, tension: float) ->
 def mean_curve_strain(
     knots: Sequence[Knot], first: int, end: int, tension: float, half: float
 ) -> float:
-    """Return the mean strain of a rope if its tension varies by ± `half` about `tension` [N].
+    """Return the mean strain of a rope along which the tension varies linearly.
 
-    The tension varies linearly. The mean is exact, since two Gauss points are used in each interval
-    between knots. `first` and `end` are as in `curve_strain`.
+    The tension varies from `tension` - `half` to `tension` + `half` [N]. The mean is exact (two
+    Gauss points between adjacent knots). `first` and `end` are as in `curve_strain`.
     """
     half = abs(half)
     low, high = tension - half, tension + half
@@ -74,35 +74,30 @@ def _knots_below(knots: Sequence[Knot], first: int, end: int, tension: float) ->
 class ElongationCurve:
     """Strain of a rope as a smooth function of tension, through the points of a table.
 
-    The table is usually a manufacturer's. Monotone cubic interpolation is used. The curve passes
-    through every point, has a continuous slope and never decreases. Above the last point, the curve
-    is linear, with the mean slope of the last interval. A table with a single point gives a
-    constant stiffness.
+    The curve is a monotone cubic interpolation with a continuous slope. Above the last point, the
+    curve is linear with the mean slope of the last interval.
 
     Parameters
     ----------
-    points : pairs (load / breaking load [-], strain [-]) with increasing loads, up to 1; the point
-        (0, 0) is added if it is missing
+    points : pairs (load / breaking load, strain) with increasing loads up to 1; (0, 0) may be
+        omitted
     breaking_load : breaking load [N]
-    permanent : permanent elongation after the first loading [-], which is added at every tension
+    permanent : permanent elongation after the first loading [-], added at every tension
 
     Attributes
     ----------
-    tensions, strains : tensions [N] and strains [-] of the points of the table, starting with (0,
-        0)
-    breaking_load, permanent : values of the parameters
+    tensions, strains : points of the table, starting with (0, 0) [N], [-]
     knots : the curve in the form used by the march, including permanent elongation
-    limit : tension above which results need a warning [N], which is the tension of the last point,
-        but at most 80 % of the breaking load
+    limit : tension above which results need a warning [N]: the last point, at most 80 % of the
+        breaking load
 
     Raises
     ------
     ValueError
-        The loads do not increase, the strains decrease, the strain at zero load is not 0, a load
-        exceeds the breaking load, or a value is negative or not finite.
+        Loads do not increase or exceed 1, strains decrease or do not start at 0, or a value is
+        negative or not finite.
 
-    Source: F. N. Fritsch & J. Butland (1984), SIAM J. Sci. Stat. Comput. 5, 300-304, for the slopes
-    at the points.
+    Source: F. N. Fritsch & J. Butland (1984), SIAM J. Sci. Stat. Comput. 5, 300-304.
     """
 
     __slots__ = ("breaking_load", "knots", "limit", "permanent", "strains", "tensions")

@@ -1,9 +1,8 @@
 """Strumming (vortex-induced vibration) of a line: frequency, amplitude, and increase of Cn.
 
-Amplitudes A are single amplitudes relative to the diameter, A/D [-]; angles are in radians. A long
-line has a mode near every frequency, so it is assumed to strum wherever it sheds vortices. In a
-sheared current, or with attachments or fairing, a line strums less; the factors given here are
-upper limits.
+Amplitudes A are single amplitudes, given as the ratio A/D to the diameter [-]. Angles are in
+radians. A line is assumed to strum wherever it sheds vortices. The drag factors are upper limits:
+sheared currents, attachments and fairing reduce strumming.
 """
 
 from collections.abc import Callable, Mapping
@@ -25,6 +24,8 @@ CABLE_MODE = 1.155
 cylinder has γ = 1.
 """
 
+# above A/D = 1, Blevins's formula exceeds the measured Cn of 2.4 to 3.2 (Griffin et al. 1984),
+# which is 2.0 to 2.7 times Cn without strumming
 _BLEVINS_CAP = 1.0
 
 
@@ -45,8 +46,7 @@ def reduced_damping(
 
     Parameters
     ----------
-    mass : mass per metre of line [kg/m]
-    diameter : diameter of the line [m]
+    mass, diameter : mass per metre [kg/m] and diameter [m] of the line
     density : density of the water [kg/m³]
     damping : structural damping ζ, as a fraction of critical damping [-]
     """
@@ -61,8 +61,8 @@ def griffin_skop(damping: float, mode: float = CABLE_MODE) -> float:
     damping : reduced damping S_G [-]
     mode : mode factor γ [-]
 
-    Source: Griffin, Skop & Ramberg (1975), Offshore Technology Conference, paper 2319, who give the
-    double amplitude, with 1.29 γ instead of 0.645 γ.
+    Source: Griffin, Skop & Ramberg (1975), Offshore Technology Conference, paper 2319, for the
+    double amplitude (1.29 γ).
     """
     return 0.645 * mode * pow(1.0 + 0.43 * damping, -3.35)
 
@@ -70,18 +70,10 @@ def griffin_skop(damping: float, mode: float = CABLE_MODE) -> float:
 def line_amplitude(
     mass: float, diameter: float, density: float, damping: float = STRUCTURAL_DAMPING
 ) -> float:
-    """Return the amplitude ratio A/D of a strumming line.
+    """Return the amplitude ratio A/D of a strumming line, from `griffin_skop` for a cable.
 
-    The ratio is the result of `griffin_skop` with the mode factor of a cable. The ratio does not
-    depend on the current, because some mode of a long line is excited at any speed. Values for
-    ropes and wires in water are between 0.68 and 0.74.
-
-    Parameters
-    ----------
-    mass : mass per metre of line [kg/m]
-    diameter : diameter of the line [m]
-    density : density of the water [kg/m³]
-    damping : structural damping ζ, as a fraction of critical damping [-]
+    The ratio does not depend on the current. Typical ratios of ropes and wires in water are 0.68 to
+    0.74. The arguments are as in `reduced_damping`.
     """
     return griffin_skop(reduced_damping(mass, diameter, density, damping))
 
@@ -89,7 +81,7 @@ def line_amplitude(
 def vandiver(amplitude: float) -> float:
     """Return the ratio of Cn of a strumming line to Cn without strumming, by Vandiver's formula.
 
-    The formula is 1 + 1.043 (2 Y_rms/D)^0.65 with Y_rms = A/√2, where `amplitude` is A/D.
+    The ratio is 1 + 1.043 (2 Y_rms/D)^0.65 with Y_rms = A/√2. `amplitude` is A/D.
 
     Source: Vandiver (1983), Offshore Technology Conference, paper 4490.
     """
@@ -99,9 +91,7 @@ def vandiver(amplitude: float) -> float:
 def blevins(amplitude: float) -> float:
     """Return the ratio of Cn of a strumming line to Cn without strumming, by Blevins's formula.
 
-    The formula is 1 + 2.1 A/D, where `amplitude` is A/D. The ratio is constant above A/D = 1, where
-    the formula would exceed the values measured on cables. The measured Cn is 2.4 to 3.2, which is
-    2.0 to 2.7 times Cn without strumming (Griffin et al. 1984).
+    The ratio is 1 + 2.1 A/D, and constant above A/D = 1. `amplitude` is A/D.
 
     Source: Blevins (1990), Flow-Induced Vibration, second edition.
     """
@@ -111,8 +101,7 @@ def blevins(amplitude: float) -> float:
 def skop_griffin(amplitude: float) -> float:
     """Return the ratio of Cn of a strumming line to Cn without strumming, by Skop and Griffin.
 
-    The formula is 1 + 1.16 (w_r - 1)^0.65 with w_r = 1 + 2 A/D, where `amplitude` is A/D. The
-    formula applies at resonance, where reduced speed times Strouhal number equals 1.
+    The ratio at resonance is 1 + 1.16 (2 A/D)^0.65. `amplitude` is A/D.
 
     Source: Skop, Griffin & Ramberg (1977), Offshore Technology Conference, paper 2884.
     """
@@ -128,17 +117,16 @@ AMPLIFICATIONS: Mapping[str, Callable[[float], float]] = MappingProxyType(
 def drag_factor(ratio: float) -> float:
     """Return the ratio of the drag of a vibrating cylinder to its drag at rest.
 
-    The ratio follows from the power balance of Bourget & Marichal, f(λ) = (1/π) ∫₀^π (1 + λ²
-    cos²θ)^{3/2} dθ = (2/3π) √(1 + λ²) [2 (2 + λ²) E(m) - K(m)] with m = λ²/(1 + λ²). The elliptic
-    integrals K and E are evaluated by arithmetic-geometric means. (The paper prints 2/π instead of
-    1/π, which would give f(0) = 2.)
+    The ratio is f(λ) = (1/π) ∫₀^π (1 + λ² cos²θ)^{3/2} dθ, from the power balance of Bourget &
+    Marichal.
 
     Parameters
     ----------
-    ratio : ratio λ of the maximum speed of the vibration to the current speed normal to the line
-        [-]
+    ratio : maximum speed of the vibration over the current speed normal to the line, λ [-]
     """
     square = ratio * ratio
+    # The integral gives f = (2/3π) √(1 + λ²) [2 (2 + λ²) E(m) - K(m)] with m = λ²/(1 + λ²). The
+    # paper prints 2/π instead of 1/π, which would give f(0) = 2.
     # K = π/(2 agm), E = K (1 - Σ 2^(n-1) c_n²), from a = 1, b = √(1 - m), c² = m
     a, b = 1.0, 1.0 / sqrt(1.0 + square)
     weight, deficit = 0.5, 0.5 * square / (1.0 + square)
@@ -152,16 +140,15 @@ def drag_factor(ratio: float) -> float:
 
 
 class Vibration(NamedTuple):
-    """Strumming law of Bourget & Marichal in the form used by the march.
+    """Coefficients of Bourget & Marichal's strumming law, in the form used by the march.
 
     Attributes
     ----------
-    a1, b1, c1 : coefficients of the amplitude ratio a/D = a1 + b1 φ + c1 φ², with the angle φ
+    a1, b1, c1 : coefficients of the amplitude ratio a/D = a1 + b1 φ + c1 φ², where φ is the angle
         between cable and flow in degrees
-    greatest : largest factor by which strumming increases the cable's Cn [-]
-    beat : dimensionless frequency F D/|V| of the cable at the local speed |V| [-], which is 0.166
-        sin φ_n in a uniform flow of any speed. In the law for a whole line, `beat` is F [Hz]
-        instead. In the law for one cable, `beat` is F D [m/s]
+    greatest : largest factor by which strumming increases Cn of the cable [-]
+    beat : strumming frequency F [Hz] for a whole line, F D [m/s] for one cable of diameter D, or
+        F D/|V| [-] for one point with flow speed |V|
     """
 
     a1: float
@@ -188,16 +175,16 @@ def amplitude(vibration: Vibration, angle: float) -> float:
 
 
 def strummed(vibration: Vibration, across: float) -> float:
-    """Return the drag ratio C*/C₀ = f(λ) of a strumming cable, limited to `vibration.greatest`.
+    """Return the drag ratio C*/C₀ = f(λ) of a strumming cable, at most `vibration.greatest`.
 
-    λ = 2π (a/D) F D/(|V| sin φ), where φ is the angle between cable and flow, and `across` is sin
-    φ. For flow along the cable, the ratio is `vibration.greatest`.
+    λ = 2π (a/D) F D/(|V| sin φ), where φ is the angle between cable and flow, sin φ is `across`,
+    and F D/|V| is `vibration.beat`. For flow along the cable, the ratio is `vibration.greatest`.
     """
     return min(strummed_freely(vibration, across), vibration.greatest)
 
 
 def strummed_freely(vibration: Vibration, across: float) -> float:
-    """Return the drag ratio as `strummed` does, but limited to twice `vibration.greatest`."""
+    """Return the drag ratio as in `strummed`, but at most twice `vibration.greatest`."""
     if vibration.beat == 0.0:
         return 1.0
     if across <= 0.0:
@@ -209,22 +196,16 @@ def strummed_freely(vibration: Vibration, across: float) -> float:
 def amplified_share(
     ax: float, ay: float, az: float, k: float, vibration: Vibration, vx: float, vy: float, vz: float
 ) -> tuple[float, float]:
-    """Return the result of `drag_share` for a strumming cable, and the strumming factor.
+    """Return the factor c of `drag_share` for a strumming cable, and the strumming factor f.
 
-    The strumming factor is the normal drag divided by the normal drag without strumming. The factor
-    depends on the angle between the cable and the flow.
+    f is the normal drag divided by the normal drag without strumming. c [N/(m/s)] is the smallest
+    root of c |A + c V| = k f |V × A|, where f applies to the axis A + c V.
 
     Parameters
     ----------
     k : half the normal drag factor without strumming [N/(m/s)²]
-    vibration : strumming law, for which `strummed` gives a factor f ≥ 1 that decreases as the sine
-        of the angle between axis and current grows
-
-    Returns
-    -------
-    c [N/(m/s)], the smallest root of c |A + c V| = k f |V × A|, and the factor f at this root.
-    Fixed-point iteration with f(c) approaches the root monotonically from below; the iteration is
-    extrapolated as long as the result stays below the root.
+    vibration : strumming law; f is at least 1, and decreases as the angle between axis and current
+        grows
     """
     speed = sqrt(vx * vx + vy * vy + vz * vz)
     cx, cy, cz = ay * vz - az * vy, az * vx - ax * vz, ax * vy - ay * vx
@@ -235,6 +216,8 @@ def amplified_share(
     c, above = drag_share(ax, ay, az, k, vx, vy, vz), inf
     factor = strummed(vibration, _leaning(ax, ay, az, c, vx, vy, vz, flat))
     first = drag_share(ax, ay, az, k * factor, vx, vy, vz)
+    # The fixed-point iteration with f(c) rises to the root. Extrapolate the iteration as long as
+    # the result stays below the root.
     for _ in range(100):
         factor = strummed(vibration, _leaning(ax, ay, az, first, vx, vy, vz, flat))
         second = drag_share(ax, ay, az, k * factor, vx, vy, vz)
@@ -266,18 +249,17 @@ def _leaning(
 class BourgetMarichal:
     """Strumming law of a towed cable, by Bourget and Marichal.
 
-    The speed of the ship determines the frequency of the vibration, and the local angle φ between
-    cable and flow determines the amplitude. Angles φ are greater than 0 and at most π/2 [rad].
+    The speed of the ship sets the frequency of the vibration. The local angle φ between cable and
+    flow, 0 < φ ≤ π/2 [rad], sets the amplitude.
 
     Attributes
     ----------
     a1, b1, c1 : coefficients of the amplitude ratio a/D = a1 + b1 φ + c1 φ², with φ in degrees. The
-        paper does not give the coefficients. The defaults reproduce published results: a/D = 0.5
-        at 90° and, in the example of the paper, C* = 1.25 at the sphere and an angle of 16.28° at
-        the ship
+        paper omits the coefficients. The defaults give a/D = 0.5 at 90°, and reproduce the paper's
+        example (C* = 1.25 at the sphere, 16.28° at the ship)
     rest : Cn of the cable without strumming, C₀; valid only for φ > 15°
     ceiling : largest allowed C*
-    strouhal : Strouhal number of the cable, for the speed normal to the cable
+    strouhal : Strouhal number for the speed normal to the cable
     """
 
     a1: float = 1.60185
@@ -304,7 +286,7 @@ class BourgetMarichal:
         return Vibration(self.a1, self.b1, self.c1, self.greatest, beat)
 
     def frequency(self, speed: float, ship_angle: float, diameter: float) -> float:
-        """Return the frequency F = St V₀ sin φ_n/D [Hz], which is common to the whole cable.
+        """Return the frequency F = St V₀ sin φ_n/D [Hz], the same along the whole cable.
 
         Parameters
         ----------
@@ -334,18 +316,15 @@ class BourgetMarichal:
     ) -> tuple[float, float]:
         """Return C* and a/D of a towed cable without attachments, from its measured angle.
 
+        C* is the drag coefficient for which drag balances weight: w cos φ = ½ρ D C* (V₀ sin φ)².
+        If C* does not exceed C₀, a/D is 0.
+
         Parameters
         ----------
-        angle : measured angle φ between cable and flow, which is constant along the cable [rad]
+        angle : angle φ between cable and flow, constant along the cable [rad]
         speed : speed V₀ of the ship through the water [m/s]
-        diameter : diameter of the cable [m]
-        weight : weight w of the cable in water, per metre [N/m]
+        diameter, weight : D [m], and w in water [N/m], of the cable
         density : density of the water [kg/m³]
-
-        Returns
-        -------
-        The value of C* for which the drag normal to the cable balances its weight, w cos φ = ½ρ D
-        C* (V₀ sin φ)², and the corresponding a/D, which is 0 if C* does not exceed C₀.
         """
         coefficient = weight * cos(angle) / (0.5 * density * diameter * (speed * sin(angle)) ** 2)
         return coefficient, _ratio(coefficient / self.rest) / (2.0 * pi * self.strouhal)

@@ -23,15 +23,14 @@ class Load(NamedTuple):
 
     Attributes
     ----------
-    piece, clamp : indices of the piece and the clamp in the line; the clamp is -1 for the piece
-        itself
+    piece, clamp : indices of piece and clamp in the line; the clamp is -1 for the piece itself
     at : distance of the load's centre from the top of the rod [m]
     lever : fraction of the load that rotates the rod, 1 - `at`/(length of the rod); ½ for a rod
         without length
     length : length of the rigid piece [m]; 0 for a clamp
-    buoyancy, volume, normal_drag, tangential_drag, directional, lift, push_east, push_north : as in
-        `Line`
-    diameter, lengthening : values of the load's `DragCurve`; the diameter is 0 without a curve
+    diameter, lengthening : values of the load's `DragCurve`; 0 without a curve
+
+    Other attributes are as in `Line`.
     """
 
     piece: int
@@ -52,17 +51,18 @@ class Load(NamedTuple):
 
 
 class CableStretch(NamedTuple):
-    """A length of cable or chain without clamps, which is a whole piece or a part between clamps.
+    """A length of cable or chain without clamps: a whole piece, or a part between clamps.
 
     Attributes
     ----------
     piece : index of the piece in the line
     length : unstretched length [m]
-    buoyancy, volume, normal_drag, tangential_drag, compliance, thinning : as in `Line`
     friction : number of the friction law, see `Friction`
-    first_knot, end_knot : range of the elongation curve among the knots of the track; the two are
-        equal if there is no curve
+    first_knot, end_knot : range of the elongation curve in the knots of the track; equal without a
+        curve
     diameter : diameter [m] if the cable strums, otherwise 0
+
+    Other attributes are as in `Line`.
     """
 
     piece: int
@@ -83,13 +83,13 @@ ROD, CABLE, CLAMP = range(3)
 
 
 class Stage(NamedTuple):
-    """One step of the march along a line, which is a rod, a length of cable, or a clamp.
+    """One step of the march along a line: a rod, a length of cable, or a clamp.
 
     Attributes
     ----------
     kind : ROD, CABLE or CLAMP
-    first, size : for a rod or clamp, index of its first load, and number of its loads; for a cable,
-        index of the cable, and 1
+    first : index of the cable, or of the first load
+    size : number of loads; 1 for a cable
     length : length of the stage [m]
     """
 
@@ -102,8 +102,7 @@ class Stage(NamedTuple):
 class Course(NamedTuple):
     """A `Track` in the form used by the march, with lists of its parts from the top down.
 
-    `landing` is the index of the first stage that may touch the seabed. This stage is below the
-    last buoyant stage.
+    `landing` is the index of the first stage that may touch the seabed.
     """
 
     stages: Sequence[Stage]
@@ -116,13 +115,10 @@ class Course(NamedTuple):
 
 @dataclass(frozen=True)
 class Track:
-    """A `Line` converted for the march to rows of plain numbers, from the free end to the anchor.
+    """A `Line` as rows of plain numbers for the march, from the free end to the anchor.
 
-    Attributes
-    ----------
-    stages, loads, cables, knots : rows with the fields of `Stage`, `Load`, `CableStretch` and
-        `Knot`
-    vibration : strumming law of the cables
+    The rows have the fields of `Stage`, `Load`, `CableStretch` and `Knot`. `vibration` is the
+    strumming law of the cables.
     """
 
     stages: list[tuple[Any, ...]]
@@ -224,9 +220,9 @@ class Track:
 def head_count(line: Line) -> int:
     """Return the number of pieces at the free end that form one rigid body.
 
-    The body consists of the pieces down to the first buoyant piece. Pieces above the buoyant piece,
-    such as a beacon or ballast, are rigidly connected to the buoyant piece. The number is 0 if
-    there is a cable above the first buoyant piece, if no piece is buoyant, or if the end is towed.
+    The body ends with the first buoyant piece; pieces above, such as a beacon, are rigidly
+    connected. The number is 0 if the end is towed, if no piece is buoyant, or if a cable is above
+    the first buoyant piece.
     """
     if line.towed:
         return 0
@@ -244,10 +240,10 @@ class _Rows:
     Attributes
     ----------
     length, clamp_at : as in `Line`
-    rigid, clamp : for each piece, and for each clamp, the fields of a `Load` after its length
-    cable : for each piece, the fields of a `CableStretch` between length and knots
-    strums : for each piece, the diameter of its `CableStretch`
-    clamps : indices of the clamps of each piece, from its top
+    rigid, clamp : fields of a `Load` after its length, by piece and by clamp
+    cable : fields of a `CableStretch` from `buoyancy` to `friction`, by piece
+    strums : diameter of the `CableStretch`, by piece
+    clamps : indices of the clamps of each piece, from the top
     """
 
     def __init__(self, line: Line) -> None:
