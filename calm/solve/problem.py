@@ -78,7 +78,7 @@ class BuoyantPiece(NamedTuple):
     rigid_above : length of the rigid pieces directly above this piece [m]
     upto : length of the line from its top to the lower end of the piece [m]
     surface_lift : net buoyancy in water at the surface [N]
-    least : smallest fraction of the buoyancy that holds the line upright in still water [-]
+    least : smallest fraction of the buoyancy that holds the line below upright in still water [-]
     """
 
     piece: int

@@ -79,7 +79,7 @@ class Solution:
     element_piece : (k,) index of each element's piece
     element_clamp : (k,) index of the clamp that an element without length represents, else -1
     landed : whether part of the line lies on the seabed
-    hanging : number of elements above the seabed
+    hanging : number of suspended elements, which come first
     grounded_length : unstretched length on the seabed [m]
     cut : (k,) unstretched length of each element [m]
     strain : (k,) strain of each element; 0 for rigid pieces and clamps
@@ -89,7 +89,8 @@ class Solution:
     carried : the line, with buoyancy and drag reduced for floats at the surface
     riding : draft of the surface float and the forces on this float; None if no draft is computed
     marches, segments : numbers of marches and of segments used
-    miss : height of the line's end above its target (anchor, seabed or tow point) [m]
+    miss : height of the line's end above its target (anchor top, seabed or tow point) [m]; absolute
+        for a tow
     closure : relative force imbalance, |sum of the loads - force at the line's end| / |force at the
         line's end|
     moment_residual : largest deviation of an element's axis from its moment balance [rad]
