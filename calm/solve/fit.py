@@ -1,6 +1,6 @@
 """Fit of the length of a piece to a required depth.
 
-The depth is the top depth of a mooring in still water, or the depth of a towed body.
+The depth is that of the top of a mooring in still water, or of a towed body.
 """
 
 from dataclasses import replace
@@ -40,9 +40,8 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
     Raises
     ------
     NoEquilibrium
-        ``no-equilibrium`` if no length fits, because the other pieces alone are too long, because
-        the items clamped on the piece sit too low, or because there is too little buoyancy.
-        ``slack`` if the line would fold.
+        ``no-equilibrium`` if no length fits or the buoyancy is too small; ``slack`` if the line
+        would fold.
     """
     still_water = water.still()
     refuse_unsupported(line, still_water)
@@ -137,8 +136,8 @@ def fit_tow_length(
     Raises
     ------
     NoEquilibrium
-        ``no-equilibrium`` if no length up to a thousand times the depth fits. The status may also
-        be one of `solve_tow`, except ``above-surface`` and ``grounded``.
+        ``no-equilibrium`` if no length up to a thousand times the depth fits; other statuses as in
+        `solve_tow`, except ``above-surface`` and ``grounded``.
     """
     bottomless = replace(water, depth=inf)
     node = len(line.length) - 1 - piece

@@ -39,9 +39,7 @@ class FreePlace:
 
 
 def terminal(rising: Rising, angle_step: float) -> tuple[FreePlace, Cuts]:
-    """Find the terminal velocity of a free line and the depth of its lower end.
-
-    The segments of the last march are also returned.
+    """Find the terminal velocity of a free line, the depth of its lower end, and its segments.
 
     Parameters
     ----------
@@ -50,7 +48,7 @@ def terminal(rising: Rising, angle_step: float) -> tuple[FreePlace, Cuts]:
     Raises
     ------
     NoEquilibrium
-        ``no-equilibrium`` if nothing limits the speed; ``not-converged`` if no root is found.
+        ``no-equilibrium`` if nothing limits the speed; ``not-converged`` if no motion is found.
     MarchError
         The march of the vertical line failed.
     """
@@ -78,10 +76,8 @@ def _sheared(rising: Rising, velocity: Floats, share: float) -> Rising:
 def plumb_speed(line: Line, water: Water, top: float) -> float:
     """Return the terminal speed of a vertical line in still water [m/s], positive up.
 
-    At this speed the sum of weight, buoyancy and drag is zero; the forces between the parts have no
-    effect. Drag is almost proportional to the square of the speed, so a secant search in the
-    squared speed converges in a few steps. Smooth pieces in the drag crisis may allow several
-    speeds; the search finds one of these speeds.
+    If smooth pieces are in the drag crisis, several speeds may balance the forces; one of these is
+    returned.
 
     Parameters
     ----------
@@ -162,16 +158,10 @@ _FOLLOWED = 8
 
 
 def _closed(rising: Rising, place: FreePlace, angle_step: float) -> tuple[FreePlace, Cuts] | None:
-    """Find the motion near a known motion, and its segments; None if the search fails.
-
-    If the march chooses its segments freely, the imbalance is not quite continuous. The line is
-    therefore closed on given segments: first on coarse ones, then on those that the march chooses
-    at that solution.
-
-    For a plumb line only the forces are closed by Newton's method, and the depth of the lower end
-    follows. If the line doubles back within a cable, that depth is not continuous.
-    """
+    """Find the motion near a known motion, and its segments; None if the search fails."""
     sheared = not rising.plumb
+    # The depth of the lower end is an unknown of Newton's method only in shear, since the depth is
+    # not continuous if a plumb line doubles back within a cable.
     unknown = np.array([sheared, sheared, True, sheared])
     speed, span = max(float(np.linalg.norm(place.velocity)), SLOWEST), rising.water.depth
     units = np.array([speed, speed, speed, span])[unknown]
@@ -188,6 +178,7 @@ def _closed(rising: Rising, place: FreePlace, angle_step: float) -> tuple[FreePl
         return forces
 
     x, slopes = values[unknown] / units, None
+    # the imbalance is continuous only on given segments
     for step, small in ((COARSE * angle_step, NEAR), (angle_step, CLOSE)):
         here = at(x)
         try:
@@ -221,10 +212,6 @@ def system_root(
 ) -> tuple[Floats, Floats | None] | None:
     """Find the root of a system of equations near a start value, or return None.
 
-    The derivatives are computed once by finite differences, then updated by Broyden's rule. The
-    derivatives are recomputed if a step with updated derivatives does not halve the residual. A
-    step is halved until the residual decreases.
-
     Parameters
     ----------
     system : function of k unknowns that returns k residuals, scaled so that 1 is large; it may
@@ -234,7 +221,7 @@ def system_root(
 
     Returns
     -------
-    The unknowns at the root, and the derivatives at the root.
+    The unknowns and the derivatives at the root.
 
     Source: C. G. Broyden (1965), Mathematics of Computation 19, 577-593.
     """

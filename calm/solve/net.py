@@ -369,8 +369,7 @@ class NearbyNet:
         return int(np.argmax(trace.piece == piece + int(each.below_a_point)))
 
     def shape(self, number: int, line: Line, leg: int) -> tuple[Floats, float]:
-        """Return the node positions and the used buoyancy fraction of a leg, after a change of one
-        leg.
+        """Return the node positions and used buoyancy fraction of a leg, after a change of one leg.
 
         The positions (k+1, 3) are in metres, with an error of third order in the change. Raise
         NoEquilibrium if a march fails.
