@@ -66,8 +66,8 @@ def extrapolate(before: Record, coarse: Extent, after: Record, fine: Extent, nea
     ----------
     before, coarse : record and extent of the shape on coarse segments
     after, fine : record and extent of the shape on halved segments
-    near : as in `calm.physics.passing.MarchSettings`; not 0 in a batch, in which only the ends of
-        pieces and the clamps are extrapolated
+    near : as in `MarchSettings`; not 0 in a batch, for which only piece ends and clamps are
+        extrapolated
     """
     end = fine.nodes - 1
     greatest = 0.0

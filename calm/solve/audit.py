@@ -3,8 +3,8 @@
 The audit shares no code with the march.
 
 - Force balance: buoyancy and drag of all elements sum to the force at the line's end.
-- Moment balance: every axis lies along the mean of the forces at its two ends, and every cable
-  stretches in accordance with this mean force.
+- Moment balance: every axis lies along the mean of its two end forces, which also stretches every
+  cable.
 """
 
 from copy import copy
@@ -71,10 +71,10 @@ def referee_of(line: Line, water: Water, frequency: float, compiled: bool) -> Re
 
 @once_per_input
 def bodies_of(line: Line) -> tuple[Any, list[Knot]]:
-    """Return the bodies of a line for the audit, and the interpolation knots of its elongation
-    curves.
+    """Return the bodies of a line for the audit, and the knots of its elongation curves.
 
-    The bodies are the pieces, then the clamps, as an array of `RefereeBody` records.
+    The bodies are the pieces, then the clamps, as an array of `RefereeBody` records. The knots are
+    interpolation points.
     """
     pieces = len(line.length)
     bodies: Any = np.zeros(pieces + len(line.clamp_at), record_type(RefereeBody))

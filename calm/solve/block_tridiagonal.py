@@ -31,7 +31,7 @@ def solve_blocks(diagonal: Numbers, upper: Numbers, lower: Numbers, right: Numbe
     Returns
     -------
     Numbers
-        (..., n, b, k) solution; all values are NaN if a matrix is singular.
+        (..., n, b, k) solution; NaN if a matrix is singular.
     """
     try:
         return _solved(diagonal, upper, lower, right)
@@ -88,7 +88,7 @@ class _Layout(NamedTuple):
     Attributes
     ----------
     chunks, width : number of matrices, and of their columns
-    places : flat indices of the diagonal, upper and lower blocks, and of the right-hand sides
+    places : flat indices of the diagonal, upper, lower and right-hand entries
     padding : flat indices of the diagonal entries that fill up the last chunk
     """
 

@@ -23,11 +23,11 @@ class MassChain(NamedTuple):
     ----------
     springs : (n, 5) transverse stiffness; axial minus transverse stiffness; unit vector along the
         spring
-    mass, damping : (n, 6) symmetric mass and damping matrices of the nodes
+    mass, damping : (n, 6) symmetric matrices of the nodes
     omega : (f,) angular frequencies
-    top : (f, 12) complex stiffness matrix that is added at the first node
+    top : (f, 12) complex stiffness matrix added at the first node
     push : (f, n, 6) complex forces on the nodes, which `sweep_chain` overwrites with the motions
-    work : (n, 26) work array with one `Link` per node
+    work : (n, 26) one `Link` per node
     """
 
     springs: Sequence[Sequence[float]]

@@ -2,7 +2,7 @@
 
 The target is the top of the anchor, or the seabed for a line with a touchdown. The *miss* is the
 height of the marched line's end above the target [m]. The miss falls as the free end goes deeper,
-and as more of a float's buoyancy is used.
+or as more buoyancy is used.
 """
 
 from math import isnan, nan
@@ -62,13 +62,9 @@ fixed segments.
 
 
 class Root(NamedTuple):
-    """Value of a line's unknown at which the miss is zero.
+    """Value x of a line's unknown at which the miss is zero, with the miss and its slope at x.
 
-    Attributes
-    ----------
-    found : whether the miss changes sign
-    x : value of the unknown
-    miss, slope : remaining miss at x [m], NaN if a march stopped; slope of the miss at x
+    `found` is false if the miss does not change sign. A miss of NaN means that a march stopped.
     """
 
     found: bool
@@ -79,17 +75,15 @@ class Root(NamedTuple):
 
 
 class Closed(NamedTuple):
-    """Outcome of closing a line: size of the closed shape, or reason for the failure.
+    """Outcome of closing a line.
 
     Attributes
     ----------
-    ending : FOUND, or the code of the reason (see `calm.solve.solution`)
+    ending : FOUND, or the code of the reason for failure (see `calm.solve.solution`)
     value, piece : number quoted with the reason, and index of the piece concerned
     root : value of the line's unknown, and the remaining miss [m]
     nodes, hanging : number of nodes, and number of suspended elements
-    landed : whether there is a touchdown
-    grounded : unstretched length on the seabed [m]
-    segments : number of segments
+    landed, grounded : whether there is a touchdown, and unstretched length on the seabed [m]
     """
 
     ending: int
@@ -108,8 +102,7 @@ def whole_line(problem: LineProblem, lands: bool) -> Unknown:
 
     Parameters
     ----------
-    lands : whether the line may lie on the seabed; its target is then the seabed, otherwise the
-        anchor's top
+    lands : whether the line may lie on the seabed, which is then its target
     """
     limits = problem.limits
     height = 0.0 if lands else limits.anchor_height
@@ -161,7 +154,7 @@ def place(problem: LineProblem, unknown: Unknown, x: float) -> tuple[float, floa
 
     Returns
     -------
-    Depth of the free end [m], and length of the line above the water at the free end [m].
+    Depth of the free end, and length of the line above the water there [m].
     """
     work, loads, given = problem.work, problem.course.loads, problem.loads
     if work.left[CHANGED] > 0.0:
@@ -352,14 +345,14 @@ def near_root(
 ) -> Root:
     """Find the value of a line's unknown at which the line ends at its target, near a known value.
 
-    If the free end reaches the surface, the unknown changes from its depth to the top float's used
-    buoyancy fraction, or back if the float submerges. The last march is at the root found.
+    If the free end reaches the surface, the top float's used buoyancy becomes the unknown instead
+    of the depth, and vice versa. The last march is at the root found.
 
     Parameters
     ----------
     step, cuts, given, record : as in `About`
     small : miss at which the search ends [m]
-    narrow : bracket width at which the search ends, as a fraction of the unknown's whole range
+    narrow : bracket width at which the search ends, as a fraction of the unknown's range
     """
     unknown, x, slope = root.unknown, root.x, root.slope
     miss = 0.0

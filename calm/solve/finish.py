@@ -254,8 +254,7 @@ def _excess_length_note(line: Line, water: Water) -> str:
 
 
 def watch_circle_radius(length: float, height: float) -> float:
-    """Return the largest horizontal distance √(length² - height²) of a surface float from its
-    anchor.
+    """Return the largest horizontal distance of a surface float from its anchor [m].
 
     Parameters
     ----------

@@ -27,21 +27,21 @@ from calm.solve.two_speeds import runs_compiled
 
 
 def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings: Settings) -> float:
-    """Find the unstretched length [m] of a piece that puts the free end at a given depth.
+    """Find the unstretched length [m] of a piece that puts the line's top at a given depth.
 
     The depth refers to still water.
 
     Parameters
     ----------
     line : the line; the present length of the piece is ignored
-    piece : index of the piece, a cable or chain
+    piece : index of the cable or chain
     top_depth : required depth of the free end [m]
 
     Raises
     ------
     NoEquilibrium
         ``no-equilibrium`` if no length fits or the buoyancy is too small; ``slack`` if the line
-        would fold.
+        would fold; other statuses as in `solve_mooring`.
     """
     still_water = water.still()
     refuse_unsupported(line, still_water)
@@ -130,14 +130,13 @@ def fit_tow_length(
     Parameters
     ----------
     line : line from the ship to the towed body; the present length of the piece is ignored
-    piece : index of the piece, a cable or chain
-    depth : required depth of the lower end of the piece at the towing speed [m]
+    depth : required depth of the cable's lower end at the towing speed [m]
 
     Raises
     ------
     NoEquilibrium
-        ``no-equilibrium`` if no length up to a thousand times the depth fits; other statuses as in
-        `solve_tow`, except ``above-surface`` and ``grounded``.
+        ``no-equilibrium`` if no length up to a thousand times the depth fits, or as in `solve_tow`;
+        ``not-converged`` as in `solve_tow`.
     """
     bottomless = replace(water, depth=inf)
     node = len(line.length) - 1 - piece

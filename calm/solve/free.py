@@ -35,7 +35,7 @@ class FreeMotion:
     velocity : (3,) velocity over the ground: east, north, up [m/s]
     solution : shape and forces in the flow relative to the line, with x and y from the lower end;
         error estimates are NaN
-    tangles : indices of the pieces that have wholly or partly overtaken the line above
+    tangles : indices of the pieces that have partly or wholly overtaken the line above
     """
 
     velocity: Floats
@@ -48,16 +48,16 @@ def solve_rise(
 ) -> FreeMotion:
     """Find the steady motion of a free line, which sinks if its net buoyancy is negative.
 
+    The seabed and the surface are ignored.
+
     Parameters
     ----------
-    line, water : see `calm.physics.line`; seabed and surface are ignored
     depth : depth of the line's upper end [m]
-    settings : solver settings; the default angle step is 1°
 
     Returns
     -------
-    FreeMotion : at an angle step of 1°, the error of the velocity is at most 1e-4 of the vertical
-        speed
+    FreeMotion : at an angle step of 1° (the default), the error of the velocity is at most 1e-4 of
+        the vertical speed
 
     Raises
     ------
@@ -140,8 +140,8 @@ def looped(
 
     Parameters
     ----------
-    piece, rise : (k,) piece of every element, and height of the element's lower end above its upper
-        end [m]; "lower" refers to the order of the line
+    piece, rise : (k,) piece of every element, and height of the element's second end above its
+        first end [m]
     pushed : (n,) whether a piece has no length and is compressed, and so belongs to a loop
     """
     up = np.zeros(len(line.length))

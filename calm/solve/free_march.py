@@ -26,7 +26,6 @@ class Meeting:
     force : (3,) sum of all forces [N]
     gap : distance by which the lower end must be lowered for the marches to meet [m]
     cuts : the segments used
-    trace : the shape, if recorded
     """
 
     force: Floats

@@ -41,10 +41,6 @@ class FreePlace:
 def terminal(rising: Rising, angle_step: float) -> tuple[FreePlace, Cuts]:
     """Find the terminal velocity of a free line, the depth of its lower end, and its segments.
 
-    Parameters
-    ----------
-    angle_step : largest rotation of a segment [rad]
-
     Raises
     ------
     NoEquilibrium
@@ -76,12 +72,11 @@ def _sheared(rising: Rising, velocity: Floats, share: float) -> Rising:
 def plumb_speed(line: Line, water: Water, top: float) -> float:
     """Return the terminal speed of a vertical line in still water [m/s], positive up.
 
-    If smooth pieces are in the drag crisis, several speeds may balance the forces; one of these is
-    returned.
+    The current and the stretch of the line are neglected. In the drag crisis of smooth pieces, the
+    speed may not be unique.
 
     Parameters
     ----------
-    line, water : see `calm.physics.line`; the current and the stretch are neglected
     top : depth of the line's upper end [m]
 
     Raises
@@ -214,9 +209,9 @@ def system_root(
 
     Parameters
     ----------
-    system : function of k unknowns that returns k residuals, scaled so that 1 is large; it may
-        raise `MarchError`
-    small : the search stops when no residual exceeds this absolute value
+    system : function of k unknowns that returns k residuals, scaled so that 1 is large; may raise
+        `MarchError`
+    small : absolute residual at which the search stops
     slopes : (k, k) derivatives of a nearly identical system, if known
 
     Returns

@@ -26,8 +26,7 @@ class LeastChange:
 
     Parameters
     ----------
-    excess : function of the value that returns an excess, at most 0 if the condition holds; None if
-        the excess cannot be computed
+    excess : function of the value, at most 0 if the condition holds; None if it cannot be computed
     low, high : range of the value
     whole : whether only whole numbers are allowed
     exact : whether the excess must be 0 instead of at most 0
@@ -187,16 +186,15 @@ def bracketed_root(
 
     Parameters
     ----------
-    function, about : the function is called as `function(about, number)`; a result of NaN ends the
-        search
+    function, about : the function is called as `function(about, number)`; NaN ends the search
     a, fa, b, fb : two numbers and the values of the function there
     small : |function| at which the search stops
     narrow : width of the bracket at which the search stops
 
     Returns
     -------
-    Root, value of the function at the root, and slope of the secant across the last bracket. The
-    function was last evaluated at this root, unless a or b was already good enough.
+    Root, function value there, and slope across the last bracket. The function was last evaluated
+    at this root, unless a or b was already good enough.
 
     Source: Chandrupatla, Advances in Engineering Software 28 (1997), 145-149.
     """
@@ -247,8 +245,7 @@ def root_near(
 
     Returns
     -------
-    Whether a root was found, the root, the function value at the root, and the slope of the last
-    secant.
+    Whether a root was found, the root, the function value there, and the slope of the last secant.
     """
     # secant steps while each halves the value, then longer and longer steps to a change of sign
     x = min(max(x, low), high)

@@ -157,7 +157,7 @@ def close_net(
     ----------
     x : approximate unknowns, overwritten with the solution
     enough : scaled residual at which the net counts as closed
-    known : whether the Jacobian `net.slopes` is already known
+    known : whether `net.slopes` holds the Jacobian
     """
     if len(x) == 1:
         return close_one(net, x, how, enough)

@@ -1,9 +1,8 @@
 """March of an anchored leg of a net, upwards from its touchdown or anchor.
 
-The unknowns are the force components on the lower end of the leg: the horizontal pull at the
-touchdown, and a vertical force. The vertical force is the weight on the seabed, or minus the uplift
-on the anchor. A leg without pull is slack: its part on the seabed is longer than the distance to
-the anchor.
+The unknowns are the components of the force on the leg's lower end. The vertical component is the
+weight on the seabed, or minus the uplift on the anchor. A leg without horizontal pull is slack: its
+part on the seabed is longer than the distance to the anchor.
 """
 
 from collections.abc import Sequence
@@ -94,8 +93,7 @@ def weight_of(course: Course, stage: Stage, excess: float) -> float:
 
     Parameters
     ----------
-    excess : specific weight of the water at the seabed, minus the value at the reference density
-        [N/m³]
+    excess : specific weight of the water at the seabed, above the reference value [N/m³]
     """
     if stage.kind == CABLE:
         cable = course.cables[stage.first]
@@ -327,9 +325,9 @@ def write_anchor_miss(net: NetProblem, i: int, x: Sequence[float], loose: float)
     """Write the horizontal miss of an anchored leg, and the error of the height of its lower end.
 
     The miss is zero if d is the projection of d + ρh on the disc of radius r, for any ρ > 0
-    (contact condition of Alart and Curnier). Here d is the vector from the touchdown to the anchor,
-    r the length on the seabed, and h the pull. The condition covers a taut leg (|d| = r, d parallel
-    to h) and a slack leg (|d| < r, h = 0).
+    (contact condition of Alart and Curnier). Here d is the vector from touchdown to anchor, r the
+    length on the seabed, and h the pull. A leg is taut (|d| = r, d parallel to h) or slack (|d| <
+    r, h = 0).
 
     `loose` is as in `Marching`.
     """

@@ -49,10 +49,10 @@ class LegEnd:
     Attributes
     ----------
     node : number of the node, or -1
-    place : position east, north and up of a held end [m], else None
+    place : east, north and up position of a held end [m]
     seabed : height of the seabed below an anchor [m]; -inf without an anchor
-    deeper : slope of the seabed below an anchor: increase in depth per metre to the east and north
-    past : current at a held end [m/s], which sets the strumming frequency of the leg's cables
+    deeper : slope of the seabed below an anchor, as depth increase per metre east and north
+    past : current at a held end that sets the strumming frequency of the leg [m/s]
     """
 
     node: int = -1
@@ -80,8 +80,7 @@ class NetLeg:
 class LaidLeg:
     """A leg prepared for the march, with the `LineProblem` of its line.
 
-    The pieces of the line are in the order of the march, from the lower end of the leg if that end
-    is free.
+    The pieces of the line begin at the upper end of the leg, unless the lower end is free.
     """
 
     leg: NetLeg
@@ -191,7 +190,7 @@ class LaidLeg:
 
         Parameters
         ----------
-        height : height of the upper end of the leg above the seabed [m]
+        height : height of the leg's upper end above the seabed [m]
         """
         course, suspended, weight = self.problem.course, max(height, 0.0), 0.0
         if self.may_lie[1] <= 0.0:
@@ -299,8 +298,7 @@ def leg_found(
 
     Parameters
     ----------
-    i : number of the leg
-    ends : position (3,) of the leg's end in the fine shape and in the extrapolated shape [m]
+    ends : (3,) position of the leg's end in the fine and in the extrapolated shape [m]
     errors : errors of depths [m] and of tensions [N]
     """
     state, (deep, taut) = net.state[i], errors

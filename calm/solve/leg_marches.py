@@ -1,8 +1,8 @@
 """Residual and Jacobian of a net of legs, as functions that can be compiled.
 
 The unknowns are the depths of free ends, the pulls on other ends, and the positions of nodes. The
-residual (`found`) holds the distance between each leg's end and its target, and the sum of the
-pulls at each node. The Jacobian (`slopes`) holds finite differences on the same segments.
+residual (`found`) holds the errors of the legs' end positions, and the sum of the pulls at each
+node. The Jacobian (`slopes`) is computed by finite differences.
 """
 
 from collections.abc import MutableSequence, Sequence

@@ -65,23 +65,20 @@ class LegRow(NamedTuple):
     Attributes
     ----------
     kind : kind of march, `STANDING` to `ANCHORED`
-    first, own : index of the leg's first unknown, and number of the leg's unknowns
+    first, own : index of the leg's first unknown, and number of its unknowns
     start, end : nodes at the upper and lower ends, or -1; reversed for a leg with a free lower end
-    seabed : height of the seabed below the leg's anchor [m]; -inf without an anchor
+    seabed : height of the seabed below the anchor [m]; -inf without an anchor
     rise : height of the anchor's top above the seabed [m]
-    lifts : vertical pull above which the leg ends at the top of the anchor [N], see `end_height`
-    deeper_east, deeper_north : slope of the seabed below the leg, as in `Water`
+    lifts : upward pull above which the leg ends at the anchor's top [N]
+    deeper_east, deeper_north : slope of the seabed, as in `Water`
     longest : longest segment at an angle step of 1° [m]
-    surface_range : range of the unknown of a float at the surface [m], see `LaidLeg`
-    highest : largest allowed height of any part of the leg [m]
+    surface_range, highest, weight : as in `LaidLeg`
     rides : as in `Limits`
     sheds : Strouhal number over diameter at the end that sets the strumming frequency [1/m]; 0
         without strumming
     past_east, past_north, past_up : current at that end [m/s]
-    weight : sum of the absolute net forces on the pieces [N]
-    stages, cables, surfacing, rows, pieces : numbers of stages, cables, buoyant pieces, rows of the
-        hull table, and pieces
-    landing : first stage that may lie on the seabed, see `Course`
+    surfacing, rows : numbers of buoyant pieces, and of rows of the hull table
+    landing : as in `Course`
     """
 
     kind: int
@@ -117,15 +114,13 @@ class NetProblem(NamedTuple):
     Attributes
     ----------
     lines : a `LineProblem` whose arrays have a row for each leg
-    up : courses of the anchored legs in upward order, see `calm.solve.leg_from_below`
-    cuts : work array for the segments of an anchored leg
+    up : courses of the anchored legs in upward order
     held : (·, 6) positions of each leg's held ends, at the start and the end of the march [m]
-    state : state of each leg, indexed by `STAGE` to `COARSE_GROUNDED`
+    state : (·, `OF_LEG`) state of each leg after its last march
     passed : (·, `OUT`) results of each leg's last march
     first, last : nodes at the ends of each piece
     found, kept : residual of the last march and of the best unknowns so far, both divided by `rows`
     slopes, update : Jacobian of `found`, and Newton step, for the unknowns divided by `scale`
-    trial, matrix, order : work arrays for the Newton step
     coarse, better : unknowns on coarse segments, and extrapolated unknowns
     scale, rows : scales of the unknowns and of the residual
     errors : largest errors of depths [m] and of tensions [N]
@@ -166,13 +161,12 @@ class Marching(NamedTuple):
 
     Attributes
     ----------
-    sea : the water
     step : angle step [rad]
     cuts, given : segment list, and whether the march uses the listed segments; otherwise it chooses
         and lists new segments
     exact : whether segments are split at every level of the water profile
     record : index of the record for the shapes
-    loose : pull of a slack leg towards its anchor, as a fraction of the leg's force scale. The true
+    loose : pull of a slack leg towards its anchor, as a fraction of the leg's force scale; the true
         value is 0
     """
 

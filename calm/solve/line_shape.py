@@ -43,9 +43,8 @@ class FoundShape(NamedTuple):
 
     Attributes
     ----------
-    closed : outcome, and size of the shape in the record `FINE`. The record holds the marched shape
-        and, from column `BETTER` on, the extrapolated shape
-    errors : estimated errors, see `calm.solve.accuracy`
+    closed : outcome, and size of the shape in the record `FINE`. From column `BETTER` on, the
+        record holds the extrapolated shape
     share, grounded : extrapolated value of the line's unknown, and length on the seabed [m]
     closure, moment : residuals found by the audit
     other : another equilibrium
@@ -77,12 +76,11 @@ def refused(ending: int, value: float, piece: int, root: Root) -> FoundShape:
 def settle_line(problem: LineProblem, root: Root, hangs: bool) -> FoundShape:
     """Close a line near a coarse root, on sufficiently short segments.
 
-    The shape is written to the record `FINE`, but not audited.
+    The shape is written to the record `FINE`, without an audit.
 
     Parameters
     ----------
-    hangs : whether the line must stay clear of the seabed; a shape far below the seabed is then
-        rejected
+    hangs : whether the line must stay clear of the seabed
     """
     limits = problem.limits
     coarse = fine = not_closed(NO_SHAPE_NEAR, 0.0, root)

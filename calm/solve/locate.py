@@ -1,7 +1,7 @@
 """Search for approximate equilibria of a moored line.
 
-Depths of the free end are tried downwards from the top depth of the upright line. Floats at the
-surface are also tried if the upright line would reach out of the water.
+Depths of the free end are tried from the upright line downwards. Floats at the surface are tried if
+the upright line would leave the water.
 """
 
 from math import isnan, nan, sqrt
@@ -71,8 +71,7 @@ class CoarseRoots(NamedTuple):
 
     Attributes
     ----------
-    ending, value : FOUND, or the reason for a failure (see `calm.solve.solution`), and the number
-        quoted with this reason
+    ending, value : FOUND, or the reason for a failure, and the number quoted with this reason
     root : root of the highest equilibrium
     other : another root; not `found` if there is none
     """
@@ -230,12 +229,8 @@ def dip(
 def growth_below(sea: Sea, depth: float) -> float:
     """Return the relative growth rate of the current below a given depth [1/m].
 
-    The rate is the largest change per metre, divided by the maximum speed; a weakening counts as 0.
-    If the current turns, its component across the current above counts as growth.
-
-    Parameters
-    ----------
-    depth : depth below which the current is considered [m]
+    The rate is the largest growth per metre, divided by the maximum speed. If the current turns,
+    its component across the current above counts as growth.
     """
     greatest = rise = 0.0
     last = len(sea.intervals) - 1
@@ -424,7 +419,7 @@ def roots_afloat(problem: LineProblem, unknown: Unknown) -> tuple[Root, Root]:
     """Find up to two stable equilibria of a line with its top float at the surface.
 
     The roots are used fractions of the float's buoyancy. The first root is reached as the current
-    rises from zero. The second is not `found` if there is only one.
+    rises from zero; the second may not be `found`.
     """
     lowest, highest = outer_roots(problem, unknown)
     if isnan(lowest.miss) or lowest.x == highest.x:

@@ -66,13 +66,12 @@ def solve_mooring(line: Line, water: Water, settings: Settings | None = None) ->
 
     Parameters
     ----------
-    line, water : see `calm.physics.line`
     settings : angle step (1° by default) and tolerance (1e-7 of the water depth by default)
 
     Returns
     -------
     Solution : the highest equilibrium found. At an angle step of 1°, errors of positions are at
-        most 5e-5 of the water depth, and relative errors of tensions are at most 2e-4.
+        most 5e-5 of the water depth, and relative errors of tensions 2e-4.
 
     Raises
     ------
@@ -224,10 +223,8 @@ class Nearby:
     def shape(self, line: Line) -> tuple[Floats, float]:
         """Return the node positions and the used buoyancy fraction of a slightly different line.
 
-        Returns
-        -------
-        Positions (k+1, 3) east and north of the anchor and up from the surface [m]; used fraction
-        of the surface floats' buoyancy, 1 without such floats.
+        The positions (k+1, 3) are east and north of the anchor and up from the surface [m]. The
+        fraction is 1 without floats at the surface.
 
         Raises
         ------
@@ -243,12 +240,11 @@ class Nearby:
     def solved(self, line: Line, water: Water) -> Solution:
         """Solve a different line on the segments of the original line.
 
-        The error estimates of the original line also apply to the result.
+        The error estimates remain those of the original line.
 
         Parameters
         ----------
-        line, water : a line of the same pieces, with all cable lengths scaled by one factor, and
-            its water
+        line : a line of the same pieces, with all cable lengths scaled by one factor
 
         Raises
         ------

@@ -1,10 +1,10 @@
 """Equilibrium of a net of legs: lines that are joined at nodes.
 
-Each leg is integrated by the march of a single line, from one of these points:
+The march of each leg starts
 
-- the free end, if there is one;
-- the touchdown or anchor, upwards;
-- otherwise the upper end, with an unknown pull.
+- at the free end, if there is one;
+- at the touchdown or anchor, upwards;
+- otherwise at the upper end, with an unknown pull.
 
 The depths of free ends and the positions of nodes are also unknown. Every leg must end at its held
 position or node, and the pulls at every node must balance.
@@ -51,14 +51,12 @@ class NetSolution:
 
     Attributes
     ----------
-    legs : solution of each leg as a single line, in the coordinates of the net; a leg with a free
-        lower end starts at this end
+    legs : solution of each leg, in the coordinates of the net; a leg with a free lower end starts
+        at this end
     nodes : (n, 3) positions of the nodes [m]
     imbalance : (n,) size of the resultant force at each node [N]
     miss : largest distance between a leg's end and its held position or node [m]
     depth_error, tension_error : estimated largest error of depths [m] and of tensions [N]
-    marches : number of marches
-    unknowns : unknowns of the solution, from which similar nets can start
     """
 
     legs: tuple[Solution, ...]
@@ -92,8 +90,7 @@ class NetSearch:
         self.put_in(water)
 
     def put_in(self, water: Water) -> None:
-        """Replace the current around the net; the new water must have the same depth and density.
-        """
+        """Replace the current around the net; depth and density must stay the same."""
         profile = profile_of(water)
         self.water, self.sea = water, profile.packed if self.compiled else profile.sea
 
@@ -219,9 +216,7 @@ def solve_net(
 
     Parameters
     ----------
-    legs : the legs, whose ends are at nodes, held, or free
-    nodes : number of nodes
-    water, settings : as in `solve_mooring`
+    nodes : number of nodes that join the legs
     near : solution of the same net in other water, used as a start
 
     Raises
@@ -327,16 +322,8 @@ def roughly_closed(net: NetSearch, near: NetSolution | None, loose: float = 0.0)
 class NearbyNet:
     """A solved net of legs, from which nets with one slightly different leg are solved.
 
-    All these nets have the segments of the solved net.
-
-    Parameters
-    ----------
-    legs, nodes, water, settings, near : as in `solve_net`
-
-    Raises
-    ------
-    NoEquilibrium
-        As in `solve_net`.
+    All these nets have the segments of the solved net. The parameters and exceptions are those of
+    `solve_net`.
     """
 
     def __init__(
@@ -371,8 +358,8 @@ class NearbyNet:
     def shape(self, number: int, line: Line, leg: int) -> tuple[Floats, float]:
         """Return the node positions and used buoyancy fraction of a leg, after a change of one leg.
 
-        The positions (k+1, 3) are in metres, with an error of third order in the change. Raise
-        NoEquilibrium if a march fails.
+        The positions (k+1, 3) [m] have an error of third order in the change. Raise NoEquilibrium
+        if a march fails.
 
         Parameters
         ----------

@@ -179,8 +179,8 @@ class _Lumps:
 def _points(line: Line, water: Water) -> list[tuple[float, float, float, float]]:
     """List the bodies on a line for the lumped masses.
 
-    Each body has a distance from the top [m], a net force [N], and two drag factors per squared
-    speed: for flow across the line, and for flow in any direction.
+    A body has a distance from the top [m], a net force [N], and two drag factors per squared speed:
+    for flow across the line, and for any direction.
     """
     found, top = [], 0.0
     density = water.density_at(np.array(0.5 * water.depth))

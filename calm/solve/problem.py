@@ -72,7 +72,6 @@ class BuoyantPiece(NamedTuple):
 
     Attributes
     ----------
-    piece : index of the piece in the line
     load, stage : index of the piece's load, and of the piece's stage, in the `Course`
     length : length of the piece [m]
     rigid_above : length of the rigid pieces directly above this piece [m]
@@ -97,19 +96,17 @@ class Limits(NamedTuple):
     Attributes
     ----------
     span : reference length [m]: the water depth or, for a tow, the line length
-    depth : water depth [m]
-    anchor_height : height of the anchor's top above the seabed [m]
+    depth, anchor_height : water depth, and height of the anchor's top above the seabed [m]
     angle_step, coarse_step : largest rotation of a segment in the final shape, and in the search
         [rad]
     allowed : largest allowed miss of a solution (see `calm.solve.closing`) [m]
     share_allowed : tolerance of a float's used buoyancy fraction [-]
-    near : as in `MarchSettings`; not 0 in a batch, which is solved without an audit
+    near : as in `MarchSettings`; not 0 in a batch, which is not audited
     length, standing : unstretched length, and length upright in still water [m]
     lift : net buoyancy of the whole line [N]
     rides : whether the draft of the top float can be computed
     at_rest : whether there is neither current nor wind
-    blown : whether there is wind
-    refused, refused_at_rest : results of `support_of` with current or wind, and at rest
+    refused, refused_at_rest : results of `support_of` in a current or wind, and at rest
     """
 
     span: float
@@ -136,17 +133,16 @@ class SearchArrays(NamedTuple):
 
     Attributes
     ----------
-    left : results of the last march (see `calm.physics.passing`), then the values with indices
-        `MARCHES` to `LAST`
+    left : results of the last march (see `calm.physics.passing`), then those at `MARCHES` to `LAST`
     chosen : unstretched lengths of the segments chosen by the march [m]
     counts : number of segments in each cable
     records : shapes of the line, indexed by `COARSE` to `OTHER`
-    shares : for each surface float, in four rows: used buoyancy fraction, slope of the miss with
-        respect to this fraction, and used fractions in the records `KEPT` and `OTHER`
+    shares : rows with a value for each surface float: used buoyancy fraction, slope of the miss
+        with respect to this fraction, and used fractions in the records `KEPT` and `OTHER`
     samples : sampled values of the line's unknown, and the misses at these values
     even : depth intervals of a uniform or weaker current
-    elements : (3, n) loads of every element of a shape
-    found : results of the search, see `calm.solve.mooring.write_found`
+    elements : (3, n) loads of every element
+    found : results, see `calm.solve.mooring.write_found`
     """
 
     left: MutableSequence[float]
@@ -166,12 +162,11 @@ class LineProblem(NamedTuple):
     Attributes
     ----------
     course : the line as the march uses it, with loads reduced for floats at the surface
-    sea : the water
     loads : the loads without this reduction
     flexible : whether each piece is a cable or chain
     surfacing : the rigid buoyant pieces, from the top down
     afloat, hull : the float that may ride at the surface, and its hull table
-    starts : solutions in uniform currents of increasing speed, see `calm.solve.starts`
+    starts : solutions from `calm.solve.starts`
     """
 
     course: Course
@@ -192,11 +187,11 @@ class Unknown(NamedTuple):
     Attributes
     ----------
     goal : height above the surface at which the line must end [m]
-    sought : number of the float with the unknown fraction; all floats above it are also at the
-        surface. `BELOW` if the depth is unknown
-    rides : whether the float rides at its draft, or (false) just below the surface
-    lands : whether the line may have a touchdown before its end
-    stages : number of stages of the line to march
+    sought : float with the unknown fraction, the lowest at the surface; `BELOW` if the depth is
+        unknown
+    rides : whether the float rides at its draft; otherwise it is just below the surface
+    lands : whether the line may have a touchdown
+    stages : number of stages to march
     """
 
     goal: float
@@ -216,7 +211,7 @@ class About(NamedTuple):
     ----------
     step : angle step [rad]
     cuts : segment list, `CHOSEN` or `HALVED`
-    given : whether the march uses the listed segments; otherwise it chooses and lists new segments
+    given : whether to use the listed segments; otherwise the march chooses and lists new segments
     record : record for the shape, or `NOT_RECORDED`
     """
 

@@ -74,7 +74,7 @@ class Referee(NamedTuple):
     ----------
     moored : the line with the loads of the solution, and its water
     bodies : the bodies of the line, with full loads even for floats at the surface
-    first, last : work arrays for the nodes of every piece
+    first, last : first and last node of every piece
     """
 
     moored: Moored
@@ -283,9 +283,7 @@ def audited(problem: LineProblem, referee: Referee, found: FoundShape) -> FoundS
 
 
 def audit_shape(problem: LineProblem, referee: Referee, closed: Closed) -> tuple[float, float]:
-    """Return the relative force imbalance and the moment residual of the shape in the record
-    `FINE`.
-    """
+    """Return the relative force imbalance and the moment residual of the shape in record `FINE`."""
     record, elements = problem.work.records[FINE], problem.work.elements
     shape = RefereeShape(record, closed.nodes, closed.hanging, referee.first, referee.last)
     take_loads(problem, referee)
@@ -343,12 +341,12 @@ def stated_errors(problem: LineProblem, found: FoundShape) -> Errors:
 def misplaced(problem: LineProblem, closed: Closed, depth_error: float) -> tuple[int, float]:
     """Find a piece of a line that is out of the water or below the seabed.
 
-    A float at the surface may stick out of the water by its length.
+    A float at the surface may stick out by its length.
 
     Returns
     -------
-    Index of the piece (-1 if there is none), and its height [m], positive above the surface or
-    negative below the seabed.
+    Index of the piece, or -1, and its height [m]: above the surface if positive, else below the
+    seabed.
     """
     record = problem.work.records[FINE]
     margin = max(depth_error, 1e-6 * problem.limits.depth)

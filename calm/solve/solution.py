@@ -25,8 +25,7 @@ class Settings:
     Attributes
     ----------
     angle_step : largest rotation of a segment of the line [rad]
-    tolerance : allowed vertical distance between the line's end and its anchor, as a fraction of
-        the water depth
+    tolerance : allowed vertical distance between the line's end and its anchor, in water depths
     seabed_friction : friction coefficient of a line on the seabed [-]
     compiled : whether to use the compiled solver; None leaves the choice to `calm.solve.two_speeds`
     """
@@ -52,7 +51,7 @@ class OtherEquilibrium(NamedTuple):
     ----------
     depth : depth of the free end [m]; negative if there is no other equilibrium
     grounded_length : length on the seabed [m]
-    used_buoyancy : used fraction of the surface float's buoyancy; 1 if the float is submerged
+    used_buoyancy : used fraction of the surface float's buoyancy; 1 if submerged
     anchor_vertical, anchor_horizontal : upward and horizontal force at the line's end [N]
     """
 
@@ -71,34 +70,27 @@ class Solution:
 
     Attributes
     ----------
-    line, water, settings : the solved problem; a towed line starts at its free end, and its current
-        is relative to the ship
-    position : (k+1, 3) position of each node, east and north of the anchor or tow point, and up
-        from the surface [m]
+    line, water, settings : the solved problem; for a tow, the current is relative to the ship
+    position : (k+1, 3) east and north of the anchor or tow point, and up from the surface [m]
     force : (k+1, 3) sum of the external forces between the free end and each node [N]
     element_piece : (k,) index of each element's piece
     element_clamp : (k,) index of the clamp that an element without length represents, else -1
-    landed : whether part of the line lies on the seabed
+    landed, grounded_length : whether part of the line lies on the seabed, and its unstretched
+        length [m]
     hanging : number of suspended elements, which come first
-    grounded_length : unstretched length on the seabed [m]
     cut : (k,) unstretched length of each element [m]
     strain : (k,) strain of each element; 0 for rigid pieces and clamps
-    afloat : indices of the pieces that float at the surface
-    buoyancy_used : used fraction of the surface floats' buoyancy
-    reserve : unused buoyancy of the surface floats [N]
+    afloat : indices of the pieces at the surface
+    buoyancy_used, reserve : used fraction and unused amount [N] of the surface floats' buoyancy
     carried : the line, with buoyancy and drag reduced for floats at the surface
-    riding : draft of the surface float and the forces on this float; None if no draft is computed
-    marches, segments : numbers of marches and of segments used
+    riding : draft of the surface float and the forces on this float, if computed
     miss : height of the line's end above its target (anchor top, seabed or tow point) [m]; absolute
         for a tow
-    closure : relative force imbalance, |sum of the loads - force at the line's end| / |force at the
-        line's end|
+    closure : relative force imbalance, |sum of the loads - end force| / |end force|
     moment_residual : largest deviation of an element's axis from its moment balance [rad]
     depth_error, tension_error : estimated largest error of depths and offsets [m], and of tensions
         [N]
-    lift_error, pull_error : estimated error of the upward and horizontal force at the line's end
-        [N]
-    other : another equilibrium, or None
+    lift_error, pull_error : estimated error of the upward and horizontal end force [N]
     frequency : strumming frequency of the cables [Hz]; 0 without strumming
     pulled : whether a force acts on the first end, as on a leg of a net
     marched : the audited shape before extrapolation; None if nothing was extrapolated
@@ -229,8 +221,8 @@ class Status(Enum):
         Parameters
         ----------
         message : reason, in which `{piece}` stands for the piece concerned
-        piece : index of the piece concerned, if any
-        advice : advice that replaces the default advice for moorings
+        piece : index of this piece
+        advice : replaces the default advice, which applies to moorings
         """
         return NoEquilibrium(self.label, message, self.advice if advice is None else advice, piece)
 
@@ -259,8 +251,8 @@ class Status(Enum):
 def standing_lift(line: Line, water: Water) -> Floats:
     """Return the net buoyancy (n,) of each piece and its clamps in an upright line [N].
 
-    Net buoyancy is positive up. The line is unstretched. Parts above the water count as submerged
-    just below the surface.
+    Net buoyancy is positive up. The line is unstretched, and parts above the water count as
+    submerged.
     """
     below = np.cumsum(line.length[::-1])[::-1] - 0.5 * line.length
     depth = np.maximum(water.depth - line.anchor_height - below, 0.0)
@@ -309,8 +301,8 @@ def support_of(lift: Floats, at_rest: bool) -> tuple[int, int, float]:
 
     Returns
     -------
-    `SUPPORTED`, `TOO_HEAVY` or `FOLDS`; index of the piece below which support ends, or -1; missing
-    buoyancy [N].
+    `SUPPORTED`, `TOO_HEAVY` or `FOLDS`; piece below which support ends, or -1; missing buoyancy
+    [N].
     """
     lifts = lift.tolist()
     above = list(accumulate(lifts))

@@ -34,7 +34,7 @@ lower equilibrium.
 def fill_starts(problem: LineProblem) -> int:
     """Solve a line in uniform currents, and return the number of solutions found.
 
-    The solutions are written to the rows of `LineProblem.starts`:
+    The solutions are written to `LineProblem.starts`:
 
     - rows 0 to 2: line clear of the seabed
     - rows 3 to 5: line with a touchdown
@@ -129,9 +129,6 @@ def is_highest(problem: LineProblem, root: Root) -> bool:
 def expected(problem: LineProblem, row: int, upright: float, top: float) -> tuple[float, float]:
     """Estimate a line's free-end depth or used buoyancy from its solutions in uniform currents.
 
-    The estimate belongs to a uniform current that inclines the line as much as the actual current
-    does.
-
     Parameters
     ----------
     row : first row of `LineProblem.starts` for this kind of line
@@ -139,8 +136,9 @@ def expected(problem: LineProblem, row: int, upright: float, top: float) -> tupl
 
     Returns
     -------
-    Estimated root, coded as in `fill_starts`, and slope of the miss.
+    Root, coded as in `fill_starts`, and slope of the miss.
     """
+    # the uniform current that inclines the line as much as the actual current does
     starts = problem.starts
     lean = lean_of(problem.course, problem.sea, top, problem.limits.depth, upright > 0.0)
     at = sqrt(sqrt(lean / starts[LEAN_ROW][STARTS - 1])) * (STARTS - 1)
@@ -166,14 +164,14 @@ def between(row: Sequence[float], k: int, share: float) -> float:
 def lean_of(course: Course, sea: Sea, top: float, depth: float, taut: bool) -> float:
     """Return the approximate knockdown [m] of a line that the current inclines slightly.
 
-    The inclination at a point is the drag on the part above, divided by the tension at the point.
-    The knockdown in a uniform current is proportional to the fourth power of the speed.
+    The inclination at a point is the drag on the part above, divided by the tension. The knockdown
+    in a uniform current is proportional to the fourth power of the speed.
 
     Parameters
     ----------
     top, depth : depth of the top of the line, and water depth [m]
-    taut : whether all buoyancy is in use; otherwise only the drag on cables counts, and the result
-        is correct up to a constant factor
+    taut : whether all buoyancy is in use; otherwise only cable drag counts, and the result is
+        correct up to a constant factor
     """
     length = 0.0
     for i in range(len(course.stages)):

@@ -66,7 +66,7 @@ class Towing:
     ----------
     east, north : velocity of the ship over the ground [m/s]
     height : height of the tow point above the surface [m]
-    wind : wind velocity to the east and north [m/s], for the line above water
+    wind : wind velocity to the east and north [m/s]
     in_air : whether the whole line is in air; its `Water` then describes the air
     """
 
@@ -90,16 +90,18 @@ def solve_tow(
 
     Returns
     -------
-    Solution : the deepest equilibrium, which an accelerating ship reaches first. The solution
-        starts at the free end, so that its piece 0 is the last piece of `line`; x and y are
-        relative to the tow point. At an angle step of 1°, errors of positions are at most 5e-5 of
-        the paid-out length, and relative errors of tensions are at most 2e-4.
+    Solution : the deepest equilibrium, which an accelerating ship reaches first. Piece 0 is the
+        last piece of `line`; x and y are relative to the tow point. At an angle step of 1°, errors
+        of positions are at most 5e-5 of the paid-out length, and relative errors of tensions 2e-4.
 
     Raises
     ------
     NoEquilibrium
-        ``above-surface`` if a part would leave the water; ``grounded`` if a part would touch the
-        seabed; ``not-converged`` if no shape passes every check.
+        - ``above-surface`` if a part would leave the water
+        - ``grounded`` if a part would touch the seabed
+        - ``no-equilibrium`` if the free end is limp, or a rigid piece or clamp half out of the
+          water
+        - ``not-converged`` if no shape passes every check
     """
     if not line.length.any():
         raise Status.NO_EQUILIBRIUM.because("The towed line has no length.", advice=PAY_OUT)
