@@ -49,7 +49,7 @@ def tension_at(record: Record, node: int) -> float:
 def next_node(record: Record, node: int, last: int) -> int:
     """Return the next node, up to `last`, that is the end of a segment or of a rigid element.
 
-    Nodes where a level splits a segment are skipped.
+    Nodes at which a level of the water profile splits a segment are skipped.
     """
     node += 1
     while node < last and record[SEGMENT][node] >= HALVES:

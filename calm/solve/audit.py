@@ -3,8 +3,8 @@
 The audit shares no code with the march.
 
 - Force balance: buoyancy and drag of all elements sum to the force at the line's end.
-- Moment balance: every axis lies along the mean of its two end forces, which also stretches every
-  cable.
+- Moment balance: every axis lies along the mean of its two end forces, and every cable has the
+  strain for this mean force.
 """
 
 from copy import copy

@@ -135,8 +135,8 @@ def fit_tow_length(
     Raises
     ------
     NoEquilibrium
-        ``no-equilibrium`` if no length up to a thousand times the depth fits, or as in `solve_tow`;
-        ``not-converged`` as in `solve_tow`.
+        ``no-equilibrium`` if no length up to a thousand times the depth fits; otherwise as in
+        `solve_tow`, except ``above-surface`` and ``grounded``.
     """
     bottomless = replace(water, depth=inf)
     node = len(line.length) - 1 - piece

@@ -60,7 +60,7 @@ def terminal(rising: Rising, angle_step: float) -> tuple[FreePlace, Cuts]:
 
 
 def _sheared(rising: Rising, velocity: Floats, share: float) -> Rising:
-    """Return the line in weaker shear.
+    """Return the line in a current with weaker shear.
 
     The difference of the current from `velocity` (3,) [m/s] is multiplied by `share`.
     """

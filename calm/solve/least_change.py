@@ -26,7 +26,7 @@ class LeastChange:
 
     Parameters
     ----------
-    excess : function of the value, at most 0 if the condition holds; None if it cannot be computed
+    excess : function of the value, at most 0 if the condition holds; None if not computable
     low, high : range of the value
     whole : whether only whole numbers are allowed
     exact : whether the excess must be 0 instead of at most 0
@@ -34,7 +34,7 @@ class LeastChange:
 
     Attributes
     ----------
-    tried : excess at every value tried; inf if the excess cannot be computed
+    tried : excess at every value tried; inf if not computable
     """
 
     excess: Callable[[float], float | None]

@@ -42,7 +42,7 @@ NEAR, CLOSED = 1e-4, 1e-10
 before the segments are fixed, and of a finished shape.
 """
 CLOSED_FOR_SEGMENTS = 1e-7
-"""Stricter limit than `CLOSED`, for the shape in which the segments are chosen. The segments then
+"""Limit for the shape in which the segments are chosen, stricter than `NEAR`. The segments then
 depend on the net alone, not on the path of the search.
 """
 MOST_LEFT = 10.0
@@ -52,10 +52,9 @@ KEPT_SLOPES_REDUCTION = 0.25
 Jacobian.
 """
 FLATTEST, MOST_HALVED = -1e-3, 100
-"""Smallest slope (per share) and largest number of steps of the secant method for a single unknown.
-"""
+"""Flattest scaled slope, and largest number of steps, of the secant method for a single unknown."""
 SINGULAR = 1e-14
-"""Pivot, in shares, below which the Newton step leaves an unknown unchanged."""
+"""Scaled pivot below which the Newton step leaves an unknown unchanged."""
 NEGLIGIBLE_PULL = 1e-5
 """Largest horizontal pull at a touchdown that counts as none, as a fraction of the weight of a leg.
 The limit exceeds the drag of the weak current that is added to still water.
@@ -170,9 +169,9 @@ def close_net(
 def close_on(
     net: NetProblem, x: MutableSequence[float], how: Marching, enough: float, known: bool
 ) -> int:
-    """Close a net on the segments of its last march; the parameters are as in `close_net`.
+    """Close a net on the segments of its last march, starting from the residual of this march.
 
-    The first step starts from the residual of that march.
+    The parameters are as in `close_net`.
     """
     if len(x) == 1:
         return close_one(net, x, how, enough)

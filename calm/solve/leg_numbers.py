@@ -35,14 +35,14 @@ EAST, NORTH, TO_EAST, TO_NORTH, TO_UP, HANGS, LIES, SLACK = range(6, 14)
 - TO_EAST, TO_NORTH, TO_UP: pull at the touchdown [N]
 - HANGS: hanging length of the stage of the touchdown, as in `calm.physics.seabed` [m]
 - LIES: length of the part on the seabed [m]
-- SLACK: excess of this length over the distance to the anchor [m]
+- SLACK: excess of `LIES` over the distance to the anchor [m]
 """
 FREQUENCY, LACKING, YIELD = range(14, 17)
 """Indices into the state of a strumming leg.
 
 - FREQUENCY: strumming frequency of the cables [Hz]
 - LACKING: vortex shedding frequency minus strumming frequency [Hz]
-- YIELD: slope of this difference [-]
+- YIELD: slope of `LACKING` against the strumming frequency [-]
 """
 COARSE_COUNT, COARSE_SUSPENDED, COARSE_STAGE, COARSE_GROUNDED = range(17, 21)
 """Indices of the state values `COUNT`, `SUSPENDED`, `STAGE` and `GROUNDED` for the shape on coarse
@@ -55,7 +55,7 @@ OUT = 7
 - 0 and 1: distance east and north, or the miss of an anchored leg
 - 2: height of the end of the march
 - 3 to 5: force at the end of the march
-- 6: height above the seabed at which an anchored leg begins
+- 6: error of the height at which an anchored leg begins on a sloping seabed
 """
 
 

@@ -63,7 +63,7 @@ WEAK = 0.1
 """Speed, as a fraction of the maximum, below which a change of current direction is ignored."""
 
 Sample = tuple[float, float]
-"""A value of the unknown, and the miss at this value [m]."""
+"""A value of a line's unknown, and the miss at this value [m]."""
 
 
 class CoarseRoots(NamedTuple):

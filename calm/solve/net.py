@@ -132,7 +132,7 @@ class NetSearch:
         return Marching(self.sea, float(step), cuts, given, given, record, loose)
 
     def closed(self, x: Floats, step: float, enough: float, loose: float = 0.0) -> Floats | None:
-        """Return the unknowns found by Newton's method, or None if the method does not converge.
+        """Return the unknowns of the closed net, or None if Newton's method does not converge.
 
         `loose` is as in `Marching`.
         """
@@ -141,7 +141,7 @@ class NetSearch:
         return found if ending == FOUND else None
 
     def settled(self, x: Floats) -> Floats:
-        """Return the unknowns to full precision, on sufficiently short segments.
+        """Return the unknowns of the closed net to full precision, on sufficiently short segments.
 
         Raise NoEquilibrium if Newton's method does not converge.
         """

@@ -63,7 +63,8 @@ CHOSEN, HALVED = range(2)
 NOT_RECORDED = -1
 MARCHES, CHANGED, LAST = range(LEFT, LEFT + 3)
 """Indices into `SearchArrays.left`, after the results of a march: number of marches of the whole
-line, number of loads changed for floats at the surface, and unknown of the last march.
+line, number of loads changed for floats at the surface, and value of the line's
+unknown in the last march.
 """
 
 

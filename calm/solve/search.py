@@ -1,4 +1,4 @@
-"""The complete search for a moored line, from the problem to an audited shape."""
+"""The complete search for a moored line's shape, with all checks and the audit."""
 
 from collections.abc import MutableSequence, Sequence
 from math import isnan, nan, sqrt
@@ -368,9 +368,8 @@ def misplaced(problem: LineProblem, closed: Closed, depth_error: float) -> tuple
 
 
 def take_loads(problem: LineProblem, referee: Referee) -> None:
-    """Set the loads of the audit bodies to the loads in this solution.
-
-    These differ from the full loads if floats are at the surface.
+    """Set the loads of the audit bodies to the loads in the solution, reduced for floats at the
+    surface.
     """
     bodies, pieces = referee.moored.bodies, referee.moored.pieces
     for k in range(len(referee.bodies)):

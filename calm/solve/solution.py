@@ -25,7 +25,7 @@ class Settings:
     Attributes
     ----------
     angle_step : largest rotation of a segment of the line [rad]
-    tolerance : allowed vertical distance between the line's end and its anchor, in water depths
+    tolerance : allowed height error at the line's end, as a fraction of the water depth
     seabed_friction : friction coefficient of a line on the seabed [-]
     compiled : whether to use the compiled solver; None leaves the choice to `calm.solve.two_speeds`
     """

@@ -40,8 +40,9 @@ def fill_starts(problem: LineProblem) -> int:
     - rows 3 to 5: line with a touchdown
     - row 6: results of `lean_of`
 
-    Each three rows hold the root, the slope of the miss there, and the knockdown [m]. A root of at
-    least 0 is the depth of the free end [m]; a negative root is the used buoyancy fraction minus 1.
+    The three rows of a line hold its roots, the slopes of the miss, and the knockdowns [m]. A root
+    of at least 0 is the depth of the free end [m]; a negative root is the used buoyancy fraction
+    minus 1.
     """
     found = 0
     limits, starts = problem.limits, problem.starts

@@ -192,7 +192,7 @@ class _Marches:
 
 
 def _solved(net: NetSearch, towing: Towing) -> tuple[NetSolution, float | None]:
-    """Find the deepest equilibrium, and the depth of the free end in the next higher one [m]."""
+    """Find the deepest equilibrium, and the free end's depth in the second deepest [m]."""
     rough = _Marches(net, max(COARSE_STEP, 2.0 * net.settings.angle_step))
     start, other_depth = _locate(rough, towing)
     how = net.marching(net.settings.angle_step, CHOSEN, FINE, given=False)
@@ -208,7 +208,7 @@ def _lacking(net: NetSearch) -> bool:
 
 
 def _locate(rough: _Marches, towing: Towing) -> tuple[float, float | None]:
-    """Find the depth of the free end at the deepest root, and at the next higher root [m]."""
+    """Find the approximate depths [m] of the free end in the two deepest equilibria."""
     span = rough.span
     found: list[float] = []
     allowed = rough.net.settings.tolerance * span
