@@ -24,10 +24,9 @@ class MassChain(NamedTuple):
     springs : (n, 5) transverse stiffness; axial minus transverse stiffness; unit vector along the
         spring
     mass, damping : (n, 6) symmetric matrices of the nodes
-    omega : (f,) angular frequencies
+    omega : (f,) angular frequencies [rad/s]
     top : (f, 12) complex stiffness matrix added at the first node
     push : (f, n, 6) complex forces on the nodes, which `sweep_chain` overwrites with the motions
-    work : (n, 26) one `Link` per node
     """
 
     springs: Sequence[Sequence[float]]

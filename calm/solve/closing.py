@@ -285,7 +285,7 @@ def segments_of(problem: LineProblem, cuts: int) -> int:
 def polish(problem: LineProblem, root: Root, cuts: int, record: int) -> Closed:
     """Close the line on fixed segments, starting from a root found on other segments.
 
-    Other floats above the float with the unknown fraction are first placed at the surface.
+    Floats above the float with the unknown buoyancy are first placed at the surface.
     """
     unknown, shares = root.unknown, problem.work.shares
     if isnan(root.miss):

@@ -29,13 +29,10 @@ from calm.solve.two_speeds import runs_compiled
 def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings: Settings) -> float:
     """Find the unstretched length [m] of a piece that puts the line's top at a given depth.
 
-    The depth refers to still water.
-
     Parameters
     ----------
     line : the line; the present length of the piece is ignored
-    piece : index of the cable or chain
-    top_depth : required depth of the free end [m]
+    top_depth : required depth of the free end in still water [m]
 
     Raises
     ------

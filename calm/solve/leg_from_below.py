@@ -324,9 +324,9 @@ def turn_round(record: Record, nodes: int) -> None:
 def write_anchor_miss(net: NetProblem, i: int, x: Sequence[float], loose: float) -> None:
     """Write the horizontal miss of an anchored leg, and the error of the height of its lower end.
 
-    The miss is zero if d is the projection of d + ρh on the disc of radius r, for any ρ > 0
-    (contact condition of Alart and Curnier). Here d is the vector from touchdown to anchor, r the
-    length on the seabed, and h the pull. A leg is taut (|d| = r, d parallel to h) or slack (|d| <
+    Let d be the vector from touchdown to anchor, r the length on the seabed, and h the pull. The
+    miss is zero if d is the projection of d + ρh on the disc of radius r, for any ρ > 0 (contact
+    condition of Alart and Curnier). The leg is then taut (|d| = r, d parallel to h) or slack (|d| <
     r, h = 0).
 
     `loose` is as in `Marching`.

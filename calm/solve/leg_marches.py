@@ -1,8 +1,8 @@
 """Residual and Jacobian of a net of legs, as functions that can be compiled.
 
-The unknowns are the depths of free ends, the pulls on other ends, and the positions of nodes. The
-residual (`found`) holds the errors of the legs' end positions, and the sum of the pulls at each
-node. The Jacobian (`slopes`) is computed by finite differences.
+The unknowns are depths of free ends, pulls on other ends, and positions of nodes. The residual
+(`found`) holds the errors of the legs' end positions, and the sum of the pulls at each node. The
+Jacobian (`slopes`) comes from finite differences.
 """
 
 from collections.abc import MutableSequence, Sequence

@@ -118,7 +118,6 @@ class NetProblem(NamedTuple):
     held : (·, 6) positions of each leg's held ends, at the start and the end of the march [m]
     state : (·, `OF_LEG`) state of each leg after its last march
     passed : (·, `OUT`) results of each leg's last march
-    first, last : nodes at the ends of each piece
     found, kept : residual of the last march and of the best unknowns so far, both divided by `rows`
     slopes, update : Jacobian of `found`, and Newton step, for the unknowns divided by `scale`
     coarse, better : unknowns on coarse segments, and extrapolated unknowns

@@ -90,7 +90,7 @@ def locate(problem: LineProblem, lands: bool, first: bool) -> CoarseRoots:
     Parameters
     ----------
     lands : whether the line has a touchdown
-    first : whether to stop at the highest equilibrium
+    first : whether to stop at the highest one
     """
     unknown = whole_line(problem, lands)
     none = Root(False, unknown, nan, nan, nan)

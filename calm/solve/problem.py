@@ -62,9 +62,11 @@ CHOSEN, HALVED = range(2)
 """Segment lists: chosen by the march, and halved."""
 NOT_RECORDED = -1
 MARCHES, CHANGED, LAST = range(LEFT, LEFT + 3)
-"""Indices into `SearchArrays.left`, after the results of a march: number of marches of the whole
-line, number of loads changed for floats at the surface, and value of the line's
-unknown in the last march.
+"""Indices into `SearchArrays.left`, after the results of a march.
+
+- MARCHES: number of marches of the whole line
+- CHANGED: number of loads changed for floats at the surface
+- LAST: value of the line's unknown in the last march
 """
 
 
@@ -74,7 +76,6 @@ class BuoyantPiece(NamedTuple):
     Attributes
     ----------
     load, stage : index of the piece's load, and of the piece's stage, in the `Course`
-    length : length of the piece [m]
     rigid_above : length of the rigid pieces directly above this piece [m]
     upto : length of the line from its top to the lower end of the piece [m]
     surface_lift : net buoyancy in water at the surface [N]
@@ -101,12 +102,10 @@ class Limits(NamedTuple):
     angle_step, coarse_step : largest rotation of a segment in the final shape, and in the search
         [rad]
     allowed : largest allowed miss of a solution (see `calm.solve.closing`) [m]
-    share_allowed : tolerance of a float's used buoyancy fraction [-]
     near : as in `MarchSettings`; not 0 in a batch, which is not audited
     length, standing : unstretched length, and length upright in still water [m]
     lift : net buoyancy of the whole line [N]
     rides : whether the draft of the top float can be computed
-    at_rest : whether there is neither current nor wind
     refused, refused_at_rest : results of `support_of` in a current or wind, and at rest
     """
 
@@ -141,7 +140,6 @@ class SearchArrays(NamedTuple):
     shares : rows with a value for each surface float: used buoyancy fraction, slope of the miss
         with respect to this fraction, and used fractions in the records `KEPT` and `OTHER`
     samples : sampled values of the line's unknown, and the misses at these values
-    even : depth intervals of a uniform or weaker current
     elements : (3, n) loads of every element
     found : results, see `calm.solve.mooring.write_found`
     """
@@ -164,7 +162,6 @@ class LineProblem(NamedTuple):
     ----------
     course : the line as the march uses it, with loads reduced for floats at the surface
     loads : the loads without this reduction
-    flexible : whether each piece is a cable or chain
     surfacing : the rigid buoyant pieces, from the top down
     afloat, hull : the float that may ride at the surface, and its hull table
     starts : solutions from `calm.solve.starts`
@@ -240,7 +237,6 @@ def problem_of(
     ----------
     compiled : whether to prepare arrays, as compiled code requires
     rough : whether the line belongs to a batch, which is not audited
-    room : number of segments that the work arrays hold
     intervals : largest number of depth intervals in any water to be solved
     """
     profile = profile_of(water)

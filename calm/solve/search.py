@@ -74,7 +74,6 @@ class Referee(NamedTuple):
     ----------
     moored : the line with the loads of the solution, and its water
     bodies : the bodies of the line, with full loads even for floats at the surface
-    first, last : first and last node of every piece
     """
 
     moored: Moored
@@ -368,8 +367,9 @@ def misplaced(problem: LineProblem, closed: Closed, depth_error: float) -> tuple
 
 
 def take_loads(problem: LineProblem, referee: Referee) -> None:
-    """Set the loads of the audit bodies to the loads in the solution, reduced for floats at the
-    surface.
+    """Set the loads of the audit bodies to the loads in the solution.
+
+    Loads of floats at the surface are reduced.
     """
     bodies, pieces = referee.moored.bodies, referee.moored.pieces
     for k in range(len(referee.bodies)):

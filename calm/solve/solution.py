@@ -78,8 +78,7 @@ class Solution:
     landed, grounded_length : whether part of the line lies on the seabed, and its unstretched
         length [m]
     hanging : number of suspended elements, which come first
-    cut : (k,) unstretched length of each element [m]
-    strain : (k,) strain of each element; 0 for rigid pieces and clamps
+    cut, strain : (k,) unstretched length [m] and strain of each element
     afloat : indices of the pieces at the surface
     buoyancy_used, reserve : used fraction and unused amount [N] of the surface floats' buoyancy
     carried : the line, with buoyancy and drag reduced for floats at the surface
@@ -91,7 +90,7 @@ class Solution:
     depth_error, tension_error : estimated largest error of depths and offsets [m], and of tensions
         [N]
     lift_error, pull_error : estimated error of the upward and horizontal end force [N]
-    frequency : strumming frequency of the cables [Hz]; 0 without strumming
+    frequency : strumming frequency [Hz]; 0 without strumming
     pulled : whether a force acts on the first end, as on a leg of a net
     marched : the audited shape before extrapolation; None if nothing was extrapolated
     slack : length on the seabed minus the distance to the anchor, for a slack leg [m]

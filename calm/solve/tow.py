@@ -97,8 +97,7 @@ def solve_tow(
     Raises
     ------
     NoEquilibrium
-        - ``above-surface`` if a part would leave the water
-        - ``grounded`` if a part would touch the seabed
+        - ``above-surface`` or ``grounded`` if a part would leave the water or touch the seabed
         - ``no-equilibrium`` if the free end is limp, or a rigid piece or clamp half out of the
           water
         - ``not-converged`` if no shape passes every check
