@@ -1,11 +1,8 @@
 """Error estimates from shapes on coarse and on halved segments, and Richardson extrapolation.
 
-The march is of second order, so one third of the change from the coarse to the fine shape is the
-error of the fine shape. Richardson extrapolation adds this third to the fine shape. Nodes that
-exist only in the fine shape are changed like their neighbours.
-
-The method requires segments without jumps or kinks. The march therefore splits segments at levels
-of the current profile and wherever a drag law switches.
+The march is of second order, so the error of the fine shape is one third of the change from the
+coarse to the fine shape. Richardson extrapolation adds this third to the fine shape. Segments must
+have no jumps or kinks.
 """
 
 from math import sqrt
@@ -20,11 +17,9 @@ class Errors(NamedTuple):
 
     Attributes
     ----------
-    depth : largest error of any depth or offset [m]
-    tension : largest error of any tension [N]
-    relative : largest relative error of any tension [-]
-    lift, pull : errors of the upward and horizontal components of the force at the end of the line
-        [N]
+    depth : largest error of depths and offsets [m]
+    tension, relative : largest error of tensions [N], and largest relative error [-]
+    lift, pull : errors of the upward and horizontal force at the line's end [N]
     """
 
     depth: float
@@ -54,7 +49,7 @@ def tension_at(record: Record, node: int) -> float:
 def next_node(record: Record, node: int, last: int) -> int:
     """Return the next node, up to `last`, that is the end of a segment or of a rigid element.
 
-    Nodes where a level splits a segment are skipped.
+    Nodes at which a level of the water profile splits a segment are skipped.
     """
     node += 1
     while node < last and record[SEGMENT][node] >= HALVES:
@@ -65,15 +60,14 @@ def next_node(record: Record, node: int, last: int) -> int:
 def extrapolate(before: Record, coarse: Extent, after: Record, fine: Extent, near: float) -> Errors:
     """Extrapolate a shape to zero segment length, and return the estimated errors.
 
-    Only nodes that occur in both shapes are compared. They are the ends of suspended segments, the
-    touchdowns, and the nodes on the seabed.
+    Only nodes that occur in both shapes are compared.
 
     Parameters
     ----------
     before, coarse : record and extent of the shape on coarse segments
     after, fine : record and extent of the shape on halved segments
-    near : as in `calm.physics.passing.MarchSettings`; if it is not 0, the line belongs to a batch,
-        and only the ends of pieces and the clamps are extrapolated
+    near : as in `MarchSettings`; not 0 in a batch, for which only piece ends and clamps are
+        extrapolated
     """
     end = fine.nodes - 1
     greatest = 0.0
@@ -145,8 +139,10 @@ def thirds_at(
 ) -> tuple[float, float, float]:
     """Compare a node of the coarse shape with the same node of the fine shape.
 
-    Return one third of the change in the node's position relative to the end of the line [m], one
-    third of the change in tension [N], and the tension in the fine shape [N].
+    Returns
+    -------
+    One third of the change in position relative to the line's end [m], one third of the change in
+    tension [N], and the fine tension [N].
     """
     x = after[0][m] - after[0][end] - (before[0][n] - before[0][last])
     y = after[1][m] - after[1][end] - (before[1][n] - before[1][last])

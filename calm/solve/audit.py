@@ -1,9 +1,10 @@
 """Audit of every solution, which recomputes its force and moment balance from the coordinates.
 
-The audit shares no code with the march and takes only positions from it. Force balance: buoyancy
-and drag of all elements sum to the force at the end of the line. Moment balance: every axis lies
-along the mean of the forces at its two ends, and the stretch of every cable matches this mean
-force.
+The audit shares no code with the march.
+
+- Force balance: buoyancy and drag of all elements sum to the force at the line's end.
+- Moment balance: every axis lies along the mean of its two end forces, and every cable has the
+  strain for this mean force.
 """
 
 from copy import copy
@@ -72,8 +73,8 @@ def referee_of(line: Line, water: Water, frequency: float, compiled: bool) -> Re
 def bodies_of(line: Line) -> tuple[Any, list[Knot]]:
     """Return the bodies of a line for the audit, and the knots of its elongation curves.
 
-    The bodies are the pieces of the line followed by its clamps, as an array of `RefereeBody`
-    records.
+    The bodies are the pieces, then the clamps, as an array of `RefereeBody` records. The knots are
+    interpolation points.
     """
     pieces = len(line.length)
     bodies: Any = np.zeros(pieces + len(line.clamp_at), record_type(RefereeBody))

@@ -1,10 +1,7 @@
 """Solver for block-tridiagonal linear systems, written in NumPy alone.
 
-The system is divided into equal chunks. The interiors of all chunks are eliminated at once, each as
-a small dense matrix with partial pivoting. The blocks between the chunks form a smaller
-block-tridiagonal system, which is solved in the same way. Such systems arise for a chain of bars
-and for a line in waves. SciPy has a banded solver, but takes longer to load than these systems take
-to solve.
+The interiors of equal chunks of the system are eliminated at once, with partial pivoting in each
+chunk. The blocks between the chunks form a smaller system of the same kind.
 """
 
 from functools import lru_cache
@@ -27,14 +24,14 @@ def solve_blocks(diagonal: Numbers, upper: Numbers, lower: Numbers, right: Numbe
     Parameters
     ----------
     diagonal : (..., n, b, b) blocks of the main diagonal, real or complex
-    upper : (..., n-1, b, b) blocks that couple block row i to the unknowns of row i + 1
-    lower : (..., n-1, b, b) blocks that couple block row i + 1 to the unknowns of row i
+    upper : (..., n-1, b, b) blocks in row i that multiply the unknowns of row i + 1
+    lower : (..., n-1, b, b) blocks in row i + 1 that multiply the unknowns of row i
     right : (..., n, b, k) right-hand sides
 
     Returns
     -------
     Numbers
-        (..., n, b, k) solution; all values are NaN if a matrix is singular.
+        (..., n, b, k) solution; NaN if a matrix is singular.
     """
     try:
         return _solved(diagonal, upper, lower, right)
@@ -78,12 +75,11 @@ def _solved(diagonal: Numbers, upper: Numbers, lower: Numbers, right: Numbers) -
 
 
 class _Layout(NamedTuple):
-    """Positions of the entries of a system in an array with one matrix per chunk.
+    """Positions of a system's entries in an array with one matrix per chunk of blocks.
 
-    Each matrix has the rows of the blocks of one chunk. The last block of a chunk stays in the
-    reduced system. The columns of a matrix belong, in this order, to
+    The rows of a matrix belong to the blocks of one chunk. Its columns belong, in this order, to
 
-    - the other blocks of the chunk,
+    - the blocks of the chunk except the last,
     - the last block of the chunk above,
     - the last block of this chunk,
     - the right-hand sides,
@@ -92,9 +88,8 @@ class _Layout(NamedTuple):
     Attributes
     ----------
     chunks, width : number of matrices, and of their columns
-    places : indices into the flat array of all entries of the diagonal, upper and lower blocks, and
-        of the right-hand sides
-    padding : indices of the diagonal entries of the blocks that fill up the last chunk
+    places : flat indices of the diagonal, upper, lower and right-hand entries
+    padding : flat indices of the diagonal entries that fill up the last chunk
     """
 
     chunks: int

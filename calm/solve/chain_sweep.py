@@ -1,9 +1,7 @@
 """Motion of a chain of masses, springs and dampers at many frequencies, as a compiled function.
 
-The matrix of each frequency is complex, symmetric and block-tridiagonal, with blocks of the three
-directions. A sweep down the chain eliminates the nodes, and a sweep up finds their motions. Complex
-numbers are pairs of floats. A symmetric matrix is the six numbers of its upper triangle, row by
-row.
+Complex numbers are pairs of floats. Symmetric 3 x 3 matrices are the six numbers of their upper
+triangles, row by row.
 """
 
 from collections.abc import MutableSequence, Sequence
@@ -23,14 +21,12 @@ class MassChain(NamedTuple):
 
     Attributes
     ----------
-    springs : (n, 5) transverse stiffness of the spring; axial minus transverse stiffness; unit
-        vector along the spring
-    mass, damping : (n, 6) symmetric mass and damping matrices of the nodes (upper triangles)
-    omega : (f,) angular frequencies
-    top : (f, 12) complex stiffness matrix that is added at the first node
-    push : (f, n, 6) complex force on each node in three directions; `sweep_chain` overwrites the
-        forces with the motions
-    work : (n, 26) work array with one `Link` per node
+    springs : (n, 5) transverse stiffness; axial minus transverse stiffness; unit vector along the
+        spring
+    mass, damping : (n, 6) symmetric matrices of the nodes
+    omega : (f,) angular frequencies [rad/s]
+    top : (f, 12) complex stiffness matrix added at the first node
+    push : (f, n, 6) complex forces on the nodes, which `sweep_chain` overwrites with the motions
     """
 
     springs: Sequence[Sequence[float]]
@@ -45,11 +41,14 @@ class MassChain(NamedTuple):
 class Link(NamedTuple):
     """A spring with stiffness K = s + c t tᵀ, below a part of a chain with dynamic stiffness A.
 
-    The link holds the inverse of N = A + s, w = N⁻¹ t, q = A w and g = c / (1 + c t·w). Then (A +
-    K)⁻¹ is N⁻¹ - g w wᵀ, K (A + K)⁻¹ is s N⁻¹ + g q wᵀ, and K (A + K)⁻¹ A is s N⁻¹ A + g q qᵀ.
-    No large numbers are subtracted in these expressions, however stiff the spring is.
+    The link holds the inverse of N = A + s, w = N⁻¹ t, q = A w and g = c / (1 + c t·w). Then
+
+    - (A + K)⁻¹ = N⁻¹ - g w wᵀ
+    - K (A + K)⁻¹ = s N⁻¹ + g q wᵀ
+    - K (A + K)⁻¹ A = s N⁻¹ A + g q qᵀ
     """
 
+    # these terms subtract no large numbers, however stiff the spring is
     inverse: Symmetric
     w: Triple
     q: Triple

@@ -1,9 +1,8 @@
-"""Closing of a line: search for the value of the unknown at which the line ends at its anchor.
+"""Closing of a line: search for the value of its unknown at which the line ends at its target.
 
-The *miss* is the height [m] of the marched end of the line above its target, which is the top of
-the anchor, or the tow point. The miss decreases as the free end goes deeper and as more of a
-float's buoyancy is used. The root of the miss is found on fixed segments, because the miss is
-continuous on these.
+The target is the top of the anchor, or the seabed for a line with a touchdown. The *miss* is the
+height of the marched line's end above the target [m]. The miss falls as the free end goes deeper,
+or as more buoyancy is used.
 """
 
 from math import isnan, nan
@@ -63,7 +62,7 @@ fixed segments.
 
 
 class Root(NamedTuple):
-    """Value x of the unknown at which the miss is zero, with the remaining miss and its slope at x.
+    """Value x of a line's unknown at which the miss is zero, with the miss and its slope at x.
 
     `found` is false if the miss does not change sign. A miss of NaN means that a march stopped.
     """
@@ -76,17 +75,15 @@ class Root(NamedTuple):
 
 
 class Closed(NamedTuple):
-    """Outcome of closing a line, with the reason if the line cannot be closed.
+    """Outcome of closing a line.
 
     Attributes
     ----------
-    ending : FOUND, or the code of the reason (defined in `calm.solve.solution`)
+    ending : FOUND, or the code of the reason for failure (see `calm.solve.solution`)
     value, piece : number quoted with the reason, and index of the piece concerned
-    root : value of the unknown, and the remaining miss [m]
-    nodes, hanging : number of nodes, and number of elements above the seabed
-    landed : whether there is a touchdown
-    grounded : unstretched length on the seabed [m]
-    segments : number of segments
+    root : value of the line's unknown, and the remaining miss [m]
+    nodes, hanging : number of nodes, and number of suspended elements
+    landed, grounded : whether there is a touchdown, and unstretched length on the seabed [m]
     """
 
     ending: int
@@ -101,10 +98,11 @@ class Closed(NamedTuple):
 
 
 def whole_line(problem: LineProblem, lands: bool) -> Unknown:
-    """Return the unknown for a whole line whose free end is below the surface.
+    """Return the unknown of a whole line whose free end is below the surface.
 
-    If the line may lie on the seabed (`lands`), the march must end on the seabed instead of at the
-    top of the anchor.
+    Parameters
+    ----------
+    lands : whether the line may lie on the seabed, which is then its target
     """
     limits = problem.limits
     height = 0.0 if lands else limits.anchor_height
@@ -112,10 +110,7 @@ def whole_line(problem: LineProblem, lands: bool) -> Unknown:
 
 
 def down_to(problem: LineProblem, unknown: Unknown, lower: int) -> Unknown:
-    """Return the unknown for the part of a line above the float `lower`.
-
-    The target of this part is the surface.
-    """
+    """Return the unknown of the part of a line above a given float, whose target is the surface."""
     stages = int(problem.surfacing[lower].stage)
     return Unknown(0.0, unknown.sought, unknown.rides, False, stages)
 
@@ -126,9 +121,9 @@ def with_sought(unknown: Unknown, sought: int, rides: bool) -> Unknown:
 
 
 def miss_at(about: About, x: float) -> float:
-    """March a line with the unknown set to x, and return the miss [m]; NaN if the march fails.
+    """March a line for a value of its unknown, and return the miss [m]; NaN if the march fails.
 
-    The other results of the march stay in the work arrays of the problem.
+    The other results stay in the work arrays.
     """
     problem, unknown, work = about.problem, about.unknown, about.problem.work
     depth, out = place(problem, unknown, x)
@@ -155,11 +150,11 @@ def miss_at(about: About, x: float) -> float:
 
 
 def place(problem: LineProblem, unknown: Unknown, x: float) -> tuple[float, float]:
-    """Set the loads of the pieces that are at the surface, for the value x of the unknown.
+    """Set the loads of the pieces at the surface, for a value of the line's unknown.
 
     Returns
     -------
-    Depth of the free end [m], and the length of line at the free end that is out of the water [m].
+    Depth of the free end, and length of the line above the water there [m].
     """
     work, loads, given = problem.work, problem.course.loads, problem.loads
     if work.left[CHANGED] > 0.0:
@@ -207,8 +202,7 @@ def as_riding(load: Load, riding: Riding) -> Load:
 def lifted_out(load: Load, share: float, gravity: float) -> Load:
     """Return the load of a piece that is partly out of the water.
 
-    The fraction `share` of the piece is out of the water. This fraction has no drag and displaces
-    no water.
+    The emerged fraction (`share`) has no drag and displaces no water.
     """
     wet = 1.0 - share
     buoyancy = load.buoyancy - share * REFERENCE_DENSITY * gravity * load.volume
@@ -263,11 +257,9 @@ def coarse_root(
 
 
 def planned(problem: LineProblem, root: Root, step: float) -> Root:
-    """Choose the segments for an angle step, and find the root of the miss near a coarse root.
+    """Choose the segments for an angle step, and estimate the root of the miss on these segments.
 
-    If the march chooses its segments freely, the miss is not quite continuous, so its root is
-    approximate. If the segments of the last march are kept, the miss is continuous. The result is
-    the root of this continuous miss, estimated by one secant step; the caller marches at this root.
+    The estimate starts from a coarse root. The line is not marched at the estimated root.
     """
     limits = problem.limits
     small, record = (ABOUT, OTHER) if limits.near > 0.0 else (WELL_KNOWN, NOT_RECORDED)
@@ -275,6 +267,7 @@ def planned(problem: LineProblem, root: Root, step: float) -> Root:
     found = near_root(problem, root, step, CHOSEN, False, record, small, COARSEST_BRACKET)
     if not found.found and not isnan(found.miss):
         return root
+    # the miss is continuous only if the segments of the last march are kept
     x = found.x
     if found.slope < 0.0:
         x -= found.miss / found.slope
@@ -292,7 +285,7 @@ def segments_of(problem: LineProblem, cuts: int) -> int:
 def polish(problem: LineProblem, root: Root, cuts: int, record: int) -> Closed:
     """Close the line on fixed segments, starting from a root found on other segments.
 
-    If the unknown belongs to a lower float, the floats above it are first placed at the surface.
+    Floats above the float with the unknown buoyancy are first placed at the surface.
     """
     unknown, shares = root.unknown, problem.work.shares
     if isnan(root.miss):
@@ -350,17 +343,16 @@ def near_root(
     small: float,
     narrow: float,
 ) -> Root:
-    """Find the root of the miss near a known root.
+    """Find the value of a line's unknown at which the line ends at its target, near a known value.
 
-    If no root is found because the free end reaches the surface, the search continues with the used
-    fraction of the top float's buoyancy as the unknown. If the top float submerges, the search
-    continues with the depth of the free end. The last march is the march at the root.
+    If the free end reaches the surface, the top float's used buoyancy becomes the unknown instead
+    of the depth, and vice versa. The last march is at the root found.
 
     Parameters
     ----------
     step, cuts, given, record : as in `About`
     small : miss at which the search ends [m]
-    narrow : bracket width at which the search ends, as a fraction of the whole range
+    narrow : bracket width at which the search ends, as a fraction of the unknown's range
     """
     unknown, x, slope = root.unknown, root.x, root.slope
     miss = 0.0

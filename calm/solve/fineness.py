@@ -1,9 +1,7 @@
 """Choice of the number of segments, by comparing the shape on coarse and on halved segments.
 
-The segments are chosen for twice the angle step, and the line or net is closed on them. Then every
-segment is halved, and the line or net is closed again. A third of the change is the error of the
-fine shape (`calm.solve.accuracy`). If this error is too large, both steps are repeated with a
-smaller angle step.
+The coarse segments are chosen for twice the angle step. If the errors from `calm.solve.accuracy`
+are too large, both shapes are computed again for a smaller angle step.
 """
 
 from math import degrees, sqrt
@@ -26,7 +24,7 @@ def finer(errors: Errors, span: float, requested: float, step: float, segments: 
     Parameters
     ----------
     span : reference length for errors of depth [m]
-    requested, step : angle step requested in the settings, and angle step of this round [rad]
+    requested, step : angle step of the settings, and of this round [rad]
     segments : number of segments in the fine shape
     """
     target = degrees(requested)

@@ -145,12 +145,12 @@ def carried_by(line: Line, problem: LineProblem) -> Line:
 def solution_found(
     found: FoundShape, problem: LineProblem, line: Line, water: Water, settings: Settings
 ) -> Solution:
-    """Build the solution of a search that ended with an audited shape.
+    """Return the solution of a search that found an equilibrium.
 
     Raises
     ------
     NoEquilibrium
-        The search ended without a shape.
+        The search found no equilibrium.
     """
     if found.closed.ending != solution.FOUND:
         raise refusal_of(found, line, water)
@@ -255,8 +255,6 @@ def _excess_length_note(line: Line, water: Water) -> str:
 
 def watch_circle_radius(length: float, height: float) -> float:
     """Return the largest horizontal distance of a surface float from its anchor [m].
-
-    The distance is √(length² − height²).
 
     Parameters
     ----------

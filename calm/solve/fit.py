@@ -1,6 +1,6 @@
 """Fit of the length of a piece to a required depth.
 
-The depth is the top depth of a mooring in still water, or the depth of a towed body.
+The depth is that of the top of a mooring in still water, or of a towed body.
 """
 
 from dataclasses import replace
@@ -27,22 +27,18 @@ from calm.solve.two_speeds import runs_compiled
 
 
 def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings: Settings) -> float:
-    """Find the unstretched length [m] of a piece that puts the free end at a given depth.
-
-    The depth refers to still water.
+    """Find the unstretched length [m] of a piece that puts the line's top at a given depth.
 
     Parameters
     ----------
     line : the line; the present length of the piece is ignored
-    piece : index of the piece, a cable or chain
-    top_depth : required depth of the free end [m]
+    top_depth : required depth of the free end in still water [m]
 
     Raises
     ------
     NoEquilibrium
-        ``no-equilibrium`` if no length fits, because the other pieces alone are too long, because
-        the items clamped on the piece sit too low, or because there is too little buoyancy.
-        ``slack`` if the line would fold.
+        ``no-equilibrium`` if no length fits or the buoyancy is too small; ``slack`` if the line
+        would fold; other statuses as in `solve_mooring`.
     """
     still_water = water.still()
     refuse_unsupported(line, still_water)
@@ -131,14 +127,13 @@ def fit_tow_length(
     Parameters
     ----------
     line : line from the ship to the towed body; the present length of the piece is ignored
-    piece : index of the piece, a cable or chain
-    depth : required depth of the lower end of the piece at the towing speed [m]
+    depth : required depth of the cable's lower end at the towing speed [m]
 
     Raises
     ------
     NoEquilibrium
-        ``no-equilibrium`` if no length up to a thousand times the depth fits. The status may also
-        be one of `solve_tow`, except ``above-surface`` and ``grounded``.
+        ``no-equilibrium`` if no length up to a thousand times the depth fits; otherwise as in
+        `solve_tow`, except ``above-surface`` and ``grounded``.
     """
     bottomless = replace(water, depth=inf)
     node = len(line.length) - 1 - piece

@@ -1,15 +1,11 @@
 """Steady motion of a line that rises after release from its anchor.
 
-The line moves as a whole, at the velocity at which weight, buoyancy and drag balance. This terminal
-velocity is computed for the water where the rise begins.
+The whole line moves at the velocity at which weight, buoyancy and drag balance in the water where
+the rise begins. If the current is uniform over depth, the line is vertical and drifts with the
+water. Otherwise the line is inclined, and its drift is also unknown.
 
-In still water, and in a current that is uniform over depth, the line drifts with the water and is
-plumb; only its vertical speed is unknown. If the horizontal current varies with depth, the drift is
-unknown too, and the line is inclined. The drift is then found by iteration from the motion of the
-plumb line, if necessary through steps of weaker shear.
-
-If a part is pushed down by the line above, the part overtakes that line, and the line doubles back.
-The forces still balance, but the line may tangle.
+A part that is pushed down by the line above overtakes that line. The line then doubles back and may
+tangle.
 """
 
 from dataclasses import dataclass, fields, replace
@@ -37,9 +33,9 @@ class FreeMotion:
     Attributes
     ----------
     velocity : (3,) velocity over the ground: east, north, up [m/s]
-    solution : shape and forces in the flow relative to the line, with x and y relative to the lower
-        end; the error estimates are NaN and the number of marches is 0
-    tangles : indices of the pieces that have wholly or partly overtaken the line above them
+    solution : shape and forces in the flow relative to the line, with x and y from the lower end;
+        error estimates are NaN
+    tangles : indices of the pieces that have partly or wholly overtaken the line above
     """
 
     velocity: Floats
@@ -52,17 +48,16 @@ def solve_rise(
 ) -> FreeMotion:
     """Find the steady motion of a free line, which sinks if its net buoyancy is negative.
 
+    The seabed and the surface are ignored.
+
     Parameters
     ----------
-    line, water : see `calm.physics.line`; the seabed is ignored, and parts above the surface are
-        treated as submerged
     depth : depth of the line's upper end [m]
-    settings : solver settings; by default, the angle step is 1°
 
     Returns
     -------
-    FreeMotion : at an angle step of 1°, the error of the velocity is at most 1e-4 of the vertical
-        speed
+    FreeMotion : at an angle step of 1° (the default), the error of the velocity is at most 1e-4 of
+        the vertical speed
 
     Raises
     ------
@@ -139,15 +134,15 @@ shackle that touches the float below.
 def looped(
     line: Line, piece: Integers, rise: Floats, pushed: Booleans | None = None
 ) -> tuple[int, ...]:
-    """Return the indices of the pieces that form loops, or an empty tuple if the loops are short.
+    """Return the indices of the pieces that form loops in a line.
 
-    Loops are short if their total height is less than `SHORTEST_LOOP`.
+    Loops with a total height of less than `SHORTEST_LOOP` are ignored.
 
     Parameters
     ----------
-    piece, rise : (k,) index of the piece of every element, and height of the element's lower end
-        (in the order of the line) above the upper end [m]
-    pushed : (n,) whether a piece has no length and is compressed, and therefore belongs to a loop
+    piece, rise : (k,) piece of every element, and height of the element's second end above its
+        first end [m]
+    pushed : (n,) whether a piece has no length and is compressed, and so belongs to a loop
     """
     up = np.zeros(len(line.length))
     np.add.at(up, piece, np.maximum(rise, 0.0))

@@ -1,8 +1,7 @@
 """Marches of a freely rising line, in the flow relative to the moving line.
 
-The line is marched from both ends to the node where its tension should be largest. A march away
-from a free end is stable. A march towards a free end is unstable near this end, where the tension
-is small.
+The line is marched from both ends to the node with the largest estimated tension. A march towards a
+free end would be unstable.
 """
 
 from dataclasses import dataclass, replace
@@ -20,14 +19,13 @@ from calm.solve.problem import REACH
 
 @dataclass(frozen=True)
 class Meeting:
-    """Mismatch at the point where the marches from the two ends of a line meet.
+    """Mismatch where the marches from the two ends of a line meet.
 
     Attributes
     ----------
     force : (3,) sum of all forces [N]
     gap : distance by which the lower end must be lowered for the marches to meet [m]
     cuts : the segments used
-    trace : the shape, if it was recorded
     """
 
     force: Floats
@@ -44,7 +42,7 @@ class Rising:
     ----------
     line, water : see `calm.physics.line`; the current is relative to the ground
     compiled : as in `Settings`
-    top : depth of the upper end [m]; the depth of the lower end is unknown
+    top : depth of the upper end [m]
     """
 
     line: Line
@@ -59,10 +57,9 @@ class Rising:
 
     @cached_property
     def weight(self) -> float:
-        """Absolute total net buoyancy of the line, used as a scale of forces [N].
+        """Absolute net buoyancy of the line, used as a scale of forces [N].
 
-        The scale is at least a thousandth of the sum of the absolute net buoyancies of the pieces,
-        so that it is never zero.
+        The scale is at least a thousandth of the pieces' summed absolute net buoyancies.
         """
         return max(abs(float(self.lifts.sum())), 1e-3 * float(np.abs(self.lifts).sum()), 1e-300)
 
@@ -112,9 +109,9 @@ class Rising:
     def _split(self) -> int:
         """Index of the first piece that is marched from the lower end.
 
-        The tension just above this piece should be the largest in the line. It is estimated from
-        the net buoyancies and from a drag that makes the line rise steadily.
+        The estimated tension of the line is largest just above this piece.
         """
+        # drag is scaled so that the line rises steadily
         drag = self.line.plumb_drag
         pace = float(self.lifts.sum()) / max(float(drag.sum()), 1e-300)
         carried = np.cumsum(self.lifts - pace * drag)
@@ -138,7 +135,7 @@ class Rising:
         cuts: Cuts | None = None,
         record: bool = False,
     ) -> Meeting:
-        """March the line from both ends in the flow relative to the line, and return the mismatch.
+        """March the line from both ends, and return the mismatch where the marches meet.
 
         Parameters
         ----------

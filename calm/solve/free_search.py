@@ -39,18 +39,12 @@ class FreePlace:
 
 
 def terminal(rising: Rising, angle_step: float) -> tuple[FreePlace, Cuts]:
-    """Find the terminal velocity of a free line and the depth of its lower end.
-
-    The segments of the last march are also returned.
-
-    Parameters
-    ----------
-    angle_step : largest rotation of a segment [rad]
+    """Find the terminal velocity of a free line, the depth of its lower end, and its segments.
 
     Raises
     ------
     NoEquilibrium
-        ``no-equilibrium`` if nothing limits the speed; ``not-converged`` if no root is found.
+        ``no-equilibrium`` if nothing limits the speed; ``not-converged`` if no motion is found.
     MarchError
         The march of the vertical line failed.
     """
@@ -66,7 +60,7 @@ def terminal(rising: Rising, angle_step: float) -> tuple[FreePlace, Cuts]:
 
 
 def _sheared(rising: Rising, velocity: Floats, share: float) -> Rising:
-    """Return the line in weaker shear.
+    """Return the line in a current with weaker shear.
 
     The difference of the current from `velocity` (3,) [m/s] is multiplied by `share`.
     """
@@ -78,14 +72,11 @@ def _sheared(rising: Rising, velocity: Floats, share: float) -> Rising:
 def plumb_speed(line: Line, water: Water, top: float) -> float:
     """Return the terminal speed of a vertical line in still water [m/s], positive up.
 
-    At this speed the sum of weight, buoyancy and drag is zero; the forces between the parts have no
-    effect. Drag is almost proportional to the square of the speed, so a secant search in the
-    squared speed converges in a few steps. Smooth pieces in the drag crisis may allow several
-    speeds; the search finds one of these speeds.
+    The current and the stretch of the line are neglected. In the drag crisis of smooth pieces, the
+    speed may not be unique.
 
     Parameters
     ----------
-    line, water : see `calm.physics.line`; the current and the stretch are neglected
     top : depth of the line's upper end [m]
 
     Raises
@@ -162,16 +153,10 @@ _FOLLOWED = 8
 
 
 def _closed(rising: Rising, place: FreePlace, angle_step: float) -> tuple[FreePlace, Cuts] | None:
-    """Find the motion near a known motion, and its segments; None if the search fails.
-
-    If the march chooses its segments freely, the imbalance is not quite continuous. The line is
-    therefore closed on given segments: first on coarse ones, then on those that the march chooses
-    at that solution.
-
-    For a plumb line only the forces are closed by Newton's method, and the depth of the lower end
-    follows. If the line doubles back within a cable, that depth is not continuous.
-    """
+    """Find the motion near a known motion, and its segments; None if the search fails."""
     sheared = not rising.plumb
+    # The depth of the lower end is an unknown of Newton's method only in shear, since the depth is
+    # not continuous if a plumb line doubles back within a cable.
     unknown = np.array([sheared, sheared, True, sheared])
     speed, span = max(float(np.linalg.norm(place.velocity)), SLOWEST), rising.water.depth
     units = np.array([speed, speed, speed, span])[unknown]
@@ -188,6 +173,7 @@ def _closed(rising: Rising, place: FreePlace, angle_step: float) -> tuple[FreePl
         return forces
 
     x, slopes = values[unknown] / units, None
+    # the imbalance is continuous only on given segments
     for step, small in ((COARSE * angle_step, NEAR), (angle_step, CLOSE)):
         here = at(x)
         try:
@@ -221,20 +207,16 @@ def system_root(
 ) -> tuple[Floats, Floats | None] | None:
     """Find the root of a system of equations near a start value, or return None.
 
-    The derivatives are computed once by finite differences, then updated by Broyden's rule. The
-    derivatives are recomputed if a step with updated derivatives does not halve the residual. A
-    step is halved until the residual decreases.
-
     Parameters
     ----------
-    system : function of k unknowns that returns k residuals, scaled so that 1 is large; it may
-        raise `MarchError`
-    small : the search stops when no residual exceeds this absolute value
+    system : function of k unknowns that returns k residuals, scaled so that 1 is large; may raise
+        `MarchError`
+    small : absolute residual at which the search stops
     slopes : (k, k) derivatives of a nearly identical system, if known
 
     Returns
     -------
-    The unknowns at the root, and the derivatives at the root.
+    The unknowns and the derivatives at the root.
 
     Source: C. G. Broyden (1965), Mathematics of Computation 19, 577-593.
     """

@@ -21,15 +21,12 @@ _DEEPENINGS = 60
 class LeastChange:
     """Search for the smallest change of a value that reduces an excess to zero.
 
-    The search goes outward from the start in both directions, in doubling steps, until the excess
-    is at most zero. If the excess stays positive, the search continues around the smallest excess.
-    `bracketed_root` then refines the answer (bisection for whole numbers). The excess is assumed to
+    The search tries values outward from the start, in doubling steps. The excess is assumed to
     change sign at most once between two steps.
 
     Parameters
     ----------
-    excess : function of the value that returns the excess, which is at most 0 if the condition
-        holds; None if the excess cannot be computed
+    excess : function of the value, at most 0 if the condition holds; None if not computable
     low, high : range of the value
     whole : whether only whole numbers are allowed
     exact : whether the excess must be 0 instead of at most 0
@@ -37,7 +34,7 @@ class LeastChange:
 
     Attributes
     ----------
-    tried : excess at every value tried; inf if the excess cannot be computed
+    tried : excess at every value tried; inf if not computable
     """
 
     excess: Callable[[float], float | None]
@@ -94,10 +91,7 @@ class LeastChange:
         return below, above
 
     def _outward(self, start: float) -> float | None:
-        """Return the first value that meets the condition.
-
-        Values are tried in growing steps on both sides of the start.
-        """
+        """Return the first tried value that meets the condition, going outward from the start."""
         upward = [start + step for step in self._steps(self.high - start)]
         downward = [start - step for step in self._steps(start - self.low)]
         for x in sorted(upward + downward, key=lambda x: abs(x - start)):
@@ -114,13 +108,8 @@ class LeastChange:
         return [room * 2.0 ** (k - DOUBLINGS) for k in range(DOUBLINGS + 1)]
 
     def _around_the_least(self) -> float | None:
-        """Search around the smallest excess.
-
-        The wider of the two adjacent gaps is halved repeatedly.
-
-        This finds a dip between two steps, and solutions next to values without a computable
-        excess.
-        """
+        """Search around the smallest excess for a value that meets the condition."""
+        # finds a dip between two steps, and solutions next to values without a computable excess
         for _ in range(_DEEPENINGS):
             best = self.least
             if best is None:
@@ -138,7 +127,9 @@ class LeastChange:
     def _nearest(self, start: float, good: float) -> float:
         """Return the value nearest to the start that meets the condition.
 
-        It is sought between the start and `good`, a value that meets the condition.
+        Parameters
+        ----------
+        good : a value that meets the condition; the search stays between the start and this value
         """
         between = [x for x in self.tried if min(start, good) <= x <= max(start, good)]
         bad = min((x for x in between if self.tried[x] > 0.0), key=lambda x: abs(x - good))
@@ -191,26 +182,23 @@ def bracketed_root(
     small: float,
     narrow: float,
 ) -> tuple[float, float, float]:
-    """Find the root of a continuous function that has opposite signs at a and b.
-
-    Chandrupatla's method takes an inverse quadratic step if the last three points lie on a suitable
-    curve, and otherwise bisects the bracket. The first step is a secant step.
+    """Find the root of a continuous function between two numbers at which its signs differ.
 
     Parameters
     ----------
-    function, about : the function is called as `function(about, number)`; a result of NaN ends the
-        search
+    function, about : the function is called as `function(about, number)`; NaN ends the search
     a, fa, b, fb : two numbers and the values of the function there
-    small : the search stops when |function| is at most this value
-    narrow : the search stops when the width of the bracket is at most this value
+    small : |function| at which the search stops
+    narrow : width of the bracket at which the search stops
 
     Returns
     -------
-    Root, value of the function at the root, and slope of the secant across the last bracket. The
-    function was last evaluated at this root, unless the given a or b was already good enough.
+    Root, function value there, and slope across the last bracket. The function was last evaluated
+    at this root, unless a or b was already good enough.
 
     Source: Chandrupatla, Advances in Engineering Software 28 (1997), 145-149.
     """
+    # Chandrupatla's method: inverse quadratic steps, or bisection; the first step is a secant step
     share = fa / (fa - fb) if fa != fb else 0.5
     while True:
         width, slope = abs(b - a), (fb - fa) / (b - a) if b != a else 0.0
@@ -247,22 +235,19 @@ def root_near(
     small: float,
     narrow: float,
 ) -> tuple[bool, float, float, float]:
-    """Find the root of a decreasing function near x, between two limits.
-
-    The search takes secant steps from x as long as each step halves the function value. Then it
-    takes longer and longer steps until the sign changes, and calls `bracketed_root`.
+    """Find the root of a decreasing function near a given number, between two limits.
 
     Parameters
     ----------
     function, about, small, narrow : as in `bracketed_root`
-    x, slope : approximate root, and slope of the function at x
-    low, high : limits between which the root is sought
+    x, slope : approximate root, and slope of the function there
+    low, high : limits of the root
 
     Returns
     -------
-    Whether a root was found, the root, the function value at the root, and the slope of the last
-    secant.
+    Whether a root was found, the root, the function value there, and the slope of the last secant.
     """
+    # secant steps while each halves the value, then longer and longer steps to a change of sign
     x = min(max(x, low), high)
     fx = function(about, x)
     step = -fx / slope if slope < 0.0 else 0.0

@@ -1,8 +1,7 @@
-"""Closing of a net of legs on fixed segments by Newton's method, as compiled laws.
+"""Closing of a net of legs on fixed segments by Newton's method, as functions to compile.
 
-Broyden's rule updates the Jacobian (`slopes`) as long as each step reduces the residual (`found`)
-enough; otherwise the Jacobian is computed anew. A net with a single unknown is closed by secants,
-or by bisection of a bracket if these do not converge.
+Broyden's rule updates the Jacobian (`slopes`) of the residual (`found`). A net with a single
+unknown is closed by secants or bisection.
 """
 
 from collections.abc import MutableSequence, Sequence
@@ -43,7 +42,7 @@ NEAR, CLOSED = 1e-4, 1e-10
 before the segments are fixed, and of a finished shape.
 """
 CLOSED_FOR_SEGMENTS = 1e-7
-"""Stricter limit than `CLOSED`, for the shape in which the segments are chosen. The segments then
+"""Limit for the shape in which the segments are chosen, stricter than `NEAR`. The segments then
 depend on the net alone, not on the path of the search.
 """
 MOST_LEFT = 10.0
@@ -53,10 +52,9 @@ KEPT_SLOPES_REDUCTION = 0.25
 Jacobian.
 """
 FLATTEST, MOST_HALVED = -1e-3, 100
-"""Smallest slope (per share) and largest number of steps of the secant method for a single unknown.
-"""
+"""Flattest scaled slope, and largest number of steps, of the secant method for a single unknown."""
 SINGULAR = 1e-14
-"""Pivot, in shares, below which the Newton step leaves an unknown unchanged."""
+"""Scaled pivot below which the Newton step leaves an unknown unchanged."""
 NEGLIGIBLE_PULL = 1e-5
 """Largest horizontal pull at a touchdown that counts as none, as a fraction of the weight of a leg.
 The limit exceeds the drag of the weak current that is added to still water.
@@ -72,8 +70,8 @@ DEPTH_ERROR, TENSION_ERROR = range(2)
 def newton_step(net: NetProblem, found: Sequence[float]) -> float:
     """Solve the linear equations of a Newton step, and return the size of the step.
 
-    The step is written to `net.update`, divided by the scale of each unknown. The method is
-    Gaussian elimination with partial pivoting; an unknown without a pivot keeps its value.
+    The step is written to `net.update`, divided by the scale of each unknown. An unknown without a
+    pivot keeps its value.
     """
     size, matrix, row = len(found), net.matrix, 0
     for r in range(size):
@@ -118,10 +116,9 @@ def copy_values(values: Sequence[Any], kept: MutableSequence[Any]) -> None:
 
 
 def close_one(net: NetProblem, x: MutableSequence[float], how: Marching, enough: float) -> int:
-    """Close a net that has only one unknown, and return the outcome (see `close_net`).
+    """Close a net that has a single unknown, and return the outcome (see `close_net`).
 
-    The residual decreases as the unknown grows. The search uses secant steps, and bisection if a
-    secant step does not halve the residual.
+    The residual must decrease as the unknown grows.
     """
     above, below, scale, slope = -inf, inf, net.scale[0], net.slopes[0][0]
     slope, halved = slope if slope < 0.0 else -1.0, True
@@ -151,7 +148,7 @@ def close_one(net: NetProblem, x: MutableSequence[float], how: Marching, enough:
 def close_net(
     net: NetProblem, x: MutableSequence[float], how: Marching, enough: float, known: bool
 ) -> int:
-    """Close a net by Newton's method, and return the outcome.
+    """Close a net by Newton's method; return `FOUND`, `NO_SHAPE_NEAR` or `NEEDS_ROOM`.
 
     The last march is the march with the unknowns found.
 
@@ -159,7 +156,7 @@ def close_net(
     ----------
     x : approximate unknowns, overwritten with the solution
     enough : scaled residual at which the net counts as closed
-    known : whether the Jacobian `net.slopes` is already known
+    known : whether `net.slopes` holds the Jacobian
     """
     if len(x) == 1:
         return close_one(net, x, how, enough)
@@ -172,9 +169,9 @@ def close_net(
 def close_on(
     net: NetProblem, x: MutableSequence[float], how: Marching, enough: float, known: bool
 ) -> int:
-    """Close a net on the segments of its last march; the parameters are as in `close_net`.
+    """Close a net on the segments of its last march, starting from the residual of this march.
 
-    The first step starts from the residual of that march.
+    The parameters are as in `close_net`.
     """
     if len(x) == 1:
         return close_one(net, x, how, enough)
@@ -344,12 +341,12 @@ def extrapolate_legs(net: NetProblem, x: Sequence[float]) -> Errors:
 
 
 class NetTask(NamedTuple):
-    """Arguments of `do_task`, which is the only entry point to the compiled code for a net.
+    """Arguments of `do_task`, the only entry point to the compiled code for a net.
 
     Attributes
     ----------
-    task : MARCH marches the net; SLOPES also computes the Jacobian; CLOSE calls `close_net`; SETTLE
-        calls `settle`; DRIFTS calls `drifts` for the last settled net
+    task : `MARCH`, `SLOPES` (march and Jacobian), `CLOSE` (`close_net`), `SETTLE` (`settle`), or
+        `DRIFTS` (`drifts` for the last settled net)
     x : the unknowns, which CLOSE and SETTLE overwrite with the solution
     enough, known : as in `close_net`
     """

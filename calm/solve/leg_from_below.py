@@ -1,10 +1,8 @@
-"""March of an anchored leg of a net, upwards from its touchdown.
+"""March of an anchored leg of a net, upwards from its touchdown or anchor.
 
-The unknowns are the components of the force on the lower end of the leg. The horizontal components
-are the pull at the touchdown. The vertical component is the weight carried by the seabed or, if no
-part lies on the seabed, minus the uplift on the anchor. A march up from the touchdown is stable
-even if the pull there is zero. If this pull is zero, the leg is slack: the part on the seabed is
-longer than the distance to the anchor.
+The unknowns are the components of the force on the leg's lower end. The vertical component is the
+weight on the seabed, or minus the uplift on the anchor. A leg without horizontal pull is slack: its
+part on the seabed is longer than the distance to the anchor.
 """
 
 from collections.abc import Sequence
@@ -72,8 +70,8 @@ NO_PULL = 1e-9
 def course_from_below(course: Course) -> Course:
     """Return the course of a leg in reverse order, for an upward march.
 
-    The new course begins with a point load, which stands for the force at the lower end. The point
-    load at the upper end is omitted. Pieces keep their numbers.
+    The new course begins with a point load for the force at the lower end, and has none at the
+    upper end. Pieces keep their numbers.
     """
     stages, loads = [course.stages[0]], [course.loads[0]]
     cables: list[CableStretch] = []
@@ -95,7 +93,7 @@ def weight_of(course: Course, stage: Stage, excess: float) -> float:
 
     Parameters
     ----------
-    excess : specific weight of the water at the seabed, minus that at the reference density [N/m³]
+    excess : specific weight of the water at the seabed, above the reference value [N/m³]
     """
     if stage.kind == CABLE:
         cable = course.cables[stage.first]
@@ -121,10 +119,9 @@ def of_length(cable: CableStretch, length: float) -> CableStretch:
 
 
 def march_up(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
-    """March an anchored leg upwards, and return the outcome.
+    """March an anchored leg up from its touchdown, or else from its anchor; return the outcome.
 
-    The march starts at the touchdown or, without touchdown, at the anchor. The shape is recorded
-    from the lower end up; `record_down` reverses the record.
+    The record of the shape begins at the lower end, unlike other records.
     """
     leg, state, problem, bed = net.legs[i], net.state[i], leg_of(net, how.sea, i), bed_of(net, i)
     stages, loads, cables = net.up.stages[i], net.up.loads[i], net.up.cables[i][: leg.cables]
@@ -204,7 +201,7 @@ def lay(
 ) -> tuple[State, int, float]:
     """Lay the part of an anchored leg beyond its touchdown on the seabed (see `lay_line`).
 
-    The work arrays of the leg must still hold its last `march_up`.
+    The leg's work arrays must still hold its last `march_up`.
 
     Parameters
     ----------
@@ -220,10 +217,7 @@ def lay(
 
 
 def record_down(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> None:
-    """Convert the record of an anchored leg to downward order.
-
-    The record then holds the pull at the upper end, the suspended part, and the part on the seabed.
-    """
+    """Reverse the record of an anchored leg, so that the record runs down to the anchor."""
     state, record, out = net.state[i], net.lines.work.records[i][how.record], net.passed[i]
     nodes, height = int(state[SUSPENDED]), net.lines.work.records[i][how.record][2][0]
     set_row(net.lines.course.loads[i], 0, pull_of(-out[5], -out[3], -out[4]))
@@ -244,9 +238,7 @@ def march_suspended(
 ) -> int:
     """March the suspended part of an anchored leg, and return the outcome.
 
-    The list of segments covers whole cables, counted from below. If the segments are given, those
-    of the cable at the touchdown are scaled to the suspended length of this cable. This makes the
-    march a smooth function of the suspended length.
+    The segment list covers whole cables, counted from below.
     """
     leg, cuts = net.legs[i], net.cuts
     of_step, counts = work.chosen, work.counts
@@ -269,6 +261,7 @@ def march_suspended(
             for m in range(read, read + counts[k]):
                 whole += of_step[m]
             length = course.cables[k].length
+            # segments scaled to the suspended length make the march a smooth function of it
             longer = length / whole if whole > 0.0 else 0.0
             each = 0.0 if whole > 0.0 else length / max(counts[k], 1)
             for m in range(read, read + counts[k]):
@@ -331,12 +324,10 @@ def turn_round(record: Record, nodes: int) -> None:
 def write_anchor_miss(net: NetProblem, i: int, x: Sequence[float], loose: float) -> None:
     """Write the horizontal miss of an anchored leg, and the error of the height of its lower end.
 
-    A part on the seabed under tension leads straight to the anchor. A slack part may be longer than
-    the distance to the anchor. One condition covers both cases. Let d be the vector from the
-    touchdown to the anchor, r the length of line on the seabed, and h the pull. Either d has the
-    length r and the direction of h, or d is shorter than r and h is zero. Hence d is the projection
-    of d + ρh on the disc of radius r, for any ρ > 0 (the form of contact conditions by Alart and
-    Curnier).
+    Let d be the vector from touchdown to anchor, r the length on the seabed, and h the pull. The
+    miss is zero if d is the projection of d + ρh on the disc of radius r, for any ρ > 0 (contact
+    condition of Alart and Curnier). The leg is then taut (|d| = r, d parallel to h) or slack (|d| <
+    r, h = 0).
 
     `loose` is as in `Marching`.
     """

@@ -48,12 +48,11 @@ class LegEnd:
 
     Attributes
     ----------
-    node : number of the node; -1 if the end is not at a node
-    place : position east, north and up [m] of a held end, else None
+    node : number of the node, or -1
+    place : east, north and up position of a held end [m]
     seabed : height of the seabed below an anchor [m]; -inf without an anchor
-    deeper : slope of the seabed below an anchor, as the increase in depth per metre to the east and
-        to the north [-]
-    past : current at a held end [m/s], which sets the strumming frequency of the leg's cables
+    deeper : slope of the seabed below an anchor, as depth increase per metre east and north
+    past : current at a held end that sets the strumming frequency of the leg [m/s]
     """
 
     node: int = -1
@@ -81,8 +80,7 @@ class NetLeg:
 class LaidLeg:
     """A leg prepared for the march, with the `LineProblem` of its line.
 
-    The pieces of the line are in order from the free end. They begin at the lower end of the leg if
-    the lower end is free.
+    The pieces of the line begin at the upper end of the leg, unless the lower end is free.
     """
 
     leg: NetLeg
@@ -157,11 +155,11 @@ class LaidLeg:
 
     @property
     def surface_range(self) -> float:
-        """Range of the unknown [m] that corresponds to the whole buoyancy of a surface float.
+        """Range of the unknown [m] that represents the whole buoyancy of a surface float.
 
-        The range equals the leg's length (at least 0.5 m), so that a Newton step does not skip the
-        range.
+        The range equals the leg's length, but is at least 0.5 m.
         """
+        # so long that a Newton step does not skip the range
         return max(float(self.line.length.sum()), 0.5)
 
     @property
@@ -186,13 +184,13 @@ class LaidLeg:
         return sum(stage.length for stage in stages), sum(weights)
 
     def most_lying(self, height: float) -> float:
-        """Return the largest weight of line that can lie on the seabed [N].
+        """Return the largest weight of a leg's line that can lie on the seabed [N].
 
-        The result is inf if no part of the leg may touch the seabed.
+        The weight is inf if no part of the leg may touch the seabed.
 
         Parameters
         ----------
-        height : height of the upper end of the leg above the seabed [m]
+        height : height of the leg's upper end above the seabed [m]
         """
         course, suspended, weight = self.problem.course, max(height, 0.0), 0.0
         if self.may_lie[1] <= 0.0:
@@ -296,12 +294,11 @@ def leg_found(
     errors: tuple[float, float],
     water: Water, settings: Settings, compiled: bool,
 ) -> Solution:  # fmt: skip
-    """Convert a solved leg to the solution of a single line, with its audit.
+    """Convert a solved leg to the audited solution of a single line.
 
     Parameters
     ----------
-    i : number of the leg
-    ends : position (3,) of the end of the leg in the fine shape and in the extrapolated shape [m]
+    ends : (3,) position of the leg's end in the fine and in the extrapolated shape [m]
     errors : errors of depths [m] and of tensions [N]
     """
     state, (deep, taut) = net.state[i], errors
@@ -365,7 +362,7 @@ def refuse_misplaced(laid: LaidLeg, leg: Solution, near: float, before: int) -> 
     Parameters
     ----------
     near : error of depths [m]
-    before : number of pieces in the legs before this leg
+    before : number of pieces in the preceding legs
     """
     depth = leg.water.depth
     near += 1e-6 * depth

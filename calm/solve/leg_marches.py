@@ -1,9 +1,8 @@
 """Residual and Jacobian of a net of legs, as functions that can be compiled.
 
-The unknowns are the depths of free ends, the pulls on other ends, and the positions of nodes. The
-residual (`found`) holds the distance by which each leg misses its end, and the sum of the pulls at
-each node. The Jacobian (`slopes`) is computed by finite differences between marches on the same
-segments.
+The unknowns are depths of free ends, pulls on other ends, and positions of nodes. The residual
+(`found`) holds the errors of the legs' end positions, and the sum of the pulls at each node. The
+Jacobian (`slopes`) comes from finite differences.
 """
 
 from collections.abc import MutableSequence, Sequence
@@ -54,12 +53,11 @@ fixed segments; largest number of marches of a leg; smallest slope of the secant
 def load_leg(
     net: NetProblem, problem: LineProblem, i: int, x: Sequence[float]
 ) -> tuple[float, float]:
-    """Set the loads of a leg according to the unknowns x.
+    """Set the loads of a leg for given unknowns.
 
     Returns
     -------
-    Depth at which the march of the leg starts [m], and length of the part above the surface [m], as
-    in `place`.
+    Depth at which the march of the leg starts [m], and length of the part above the surface [m].
     """
     leg, state = net.legs[i], net.state[i]
     if leg.kind == PULLED:
@@ -75,17 +73,15 @@ def load_leg(
 
 
 def march_leg(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
-    """March a leg for the unknowns x, and return an outcome defined in `calm.physics.line`.
+    """March a leg for given unknowns, and return an outcome defined in `calm.physics.line`.
 
-    A strumming leg is marched repeatedly until its frequency equals the vortex shedding frequency
-    at its end. The shedding frequency falls as the assumed frequency rises, since more drag raises
-    the line. The solution is found by secant steps, or by bisection if the secant steps do not
-    converge.
+    A strumming leg is marched until its frequency equals the vortex shedding frequency at its end.
     """
     leg, state = net.legs[i], net.state[i]
     failure = march_once(net, i, x, how)
     low, high, before, lacked = -inf, inf, 0.0, inf
     settled = SETTLED if how.given else ROUGHLY_SETTLED
+    # the shedding frequency falls as the assumed frequency rises, since more drag raises the line
     for _ in range(MOST_TURNS if leg.sheds > 0.0 else 0):
         frequency = state[FREQUENCY]
         lacking = shed_by(leg, net.passed[i]) - frequency
@@ -175,9 +171,12 @@ def row_of(net: NetProblem, i: int, k: int) -> int:
 
 
 def add_passed(net: NetProblem, i: int, out: Sequence[float], share: float, column: int) -> None:
-    """Add the results of a leg's march, times `share`, to the residual or the Jacobian.
+    """Add a multiple of the results of a leg's march to the residual or the Jacobian.
 
-    The results are added to a column of the Jacobian or, if `column` is negative, to the residual.
+    Parameters
+    ----------
+    share : factor of the results
+    column : column of the Jacobian; negative for the residual
     """
     for k in range(OUT):
         row = row_of(net, i, k)
@@ -193,7 +192,7 @@ def add_passed(net: NetProblem, i: int, out: Sequence[float], share: float, colu
 def write_residual(net: NetProblem, x: MutableSequence[float], how: Marching, slopes: bool) -> int:
     """March all legs, write the residual to `net.found`, and return the outcome of the marches.
 
-    If `slopes` is true, the Jacobian is also computed and the force scales are updated.
+    If `slopes` is true, also compute the Jacobian and update the force scales.
     """
     size, nodes = len(net.found), net.nodes_at
     for k in range(size):
@@ -276,11 +275,10 @@ def slopes_of_leg(net: NetProblem, i: int, x: MutableSequence[float], how: March
 def take_scale(net: NetProblem, i: int, x: Sequence[float], loose: float) -> None:
     """Scale the unknown forces of a leg by the pull in its last march.
 
-    The pull of a slack leg may be a thousandth of other pulls. Finite differences with steps suited
-    to such large pulls would miss the derivatives of a slack leg. No scale exceeds the weight of
-    the heaviest leg. With a larger scale, legs that are too short to meet would be stretched until
-    they meet.
+    No scale exceeds the weight of the heaviest leg.
     """
+    # Steps of the finite differences that suit large pulls would be too large for a slack leg.
+    # A scale above the heaviest weight would let legs that are too short to meet be stretched.
     leg, out = net.legs[i], net.passed[i]
     if leg.own == 1:
         return

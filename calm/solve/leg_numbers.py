@@ -35,14 +35,14 @@ EAST, NORTH, TO_EAST, TO_NORTH, TO_UP, HANGS, LIES, SLACK = range(6, 14)
 - TO_EAST, TO_NORTH, TO_UP: pull at the touchdown [N]
 - HANGS: hanging length of the stage of the touchdown, as in `calm.physics.seabed` [m]
 - LIES: length of the part on the seabed [m]
-- SLACK: excess of this length over the distance to the anchor [m]
+- SLACK: excess of `LIES` over the distance to the anchor [m]
 """
 FREQUENCY, LACKING, YIELD = range(14, 17)
 """Indices into the state of a strumming leg.
 
 - FREQUENCY: strumming frequency of the cables [Hz]
 - LACKING: vortex shedding frequency minus strumming frequency [Hz]
-- YIELD: slope of this difference [-]
+- YIELD: slope of `LACKING` against the strumming frequency [-]
 """
 COARSE_COUNT, COARSE_SUSPENDED, COARSE_STAGE, COARSE_GROUNDED = range(17, 21)
 """Indices of the state values `COUNT`, `SUSPENDED`, `STAGE` and `GROUNDED` for the shape on coarse
@@ -55,7 +55,7 @@ OUT = 7
 - 0 and 1: distance east and north, or the miss of an anchored leg
 - 2: height of the end of the march
 - 3 to 5: force at the end of the march
-- 6: height above the seabed at which an anchored leg begins
+- 6: error of the height at which an anchored leg begins on a sloping seabed
 """
 
 
@@ -64,24 +64,21 @@ class LegRow(NamedTuple):
 
     Attributes
     ----------
-    kind, first, own : kind of march; index of the leg's first unknown; number of the leg's unknowns
-    start, end : numbers of the nodes at the upper and lower ends (reversed for a leg with a free
-        lower end); -1 if there is no node
-    seabed : height of the seabed below the leg's anchor [m]; -inf without an anchor
+    kind : kind of march, `STANDING` to `ANCHORED`
+    first, own : index of the leg's first unknown, and number of its unknowns
+    start, end : nodes at the upper and lower ends, or -1; reversed for a leg with a free lower end
+    seabed : height of the seabed below the anchor [m]; -inf without an anchor
     rise : height of the anchor's top above the seabed [m]
-    lifts : vertical pull [N] above which the leg ends at the top of the anchor, see `end_height`
-    deeper_east, deeper_north : slope of the seabed below the leg, as in `Water`
+    lifts : upward pull above which the leg ends at the anchor's top [N]
+    deeper_east, deeper_north : slope of the seabed, as in `Water`
     longest : longest segment at an angle step of 1° [m]
-    surface_range : range of the unknown of a float at the surface [m], see `LaidLeg`
-    highest : largest allowed height of any part of the leg [m]
+    surface_range, highest, weight : as in `LaidLeg`
     rides : as in `Limits`
-    sheds : Strouhal number over diameter [1/m] at the end where vortices set the strumming
-        frequency; 0 for a leg that does not strum
-    past_east, past_north, past_up : current at the end to which `sheds` refers [m/s]
-    weight : sum of the absolute net forces of the pieces [N], the scale of forces on a slack leg
-    stages, cables, surfacing, rows, pieces : numbers of stages, of cables, of buoyant pieces, of
-        rows in the hull table, and of pieces
-    landing : first stage that may lie on the seabed, see `Course`
+    sheds : Strouhal number over diameter at the end that sets the strumming frequency [1/m]; 0
+        without strumming
+    past_east, past_north, past_up : current at that end [m/s]
+    surfacing, rows : numbers of buoyant pieces, and of rows of the hull table
+    landing : as in `Course`
     """
 
     kind: int
@@ -112,28 +109,22 @@ class LegRow(NamedTuple):
 
 
 class NetProblem(NamedTuple):
-    """A net to be closed, with the work arrays of its search.
+    """A net of legs to be closed, with the work arrays of the search.
 
     Attributes
     ----------
-    legs : data of each leg
-    lines : a `LineProblem` whose arrays have a row for each leg, sized for the longest leg
-    up : courses of the anchored legs in upward order, see `calm.solve.leg_from_below`
-    cuts : work array for the segments of an anchored leg
+    lines : a `LineProblem` whose arrays have a row for each leg
+    up : courses of the anchored legs in upward order
     held : (·, 6) positions of each leg's held ends, at the start and the end of the march [m]
-    state : state of each leg; its entries are indexed by `STAGE` to `COARSE_GROUNDED`
-    passed : (·, `OUT`) results of the last march of each leg
-    first, last : nodes at the ends of each piece
-    found, kept : residual of the last march, and residual of the best unknowns so far, both divided
-        by `rows`
-    slopes, update : Jacobian of `found` with respect to the unknowns divided by `scale`, and the
-        Newton step
-    trial, matrix, order : work arrays for the Newton step
+    state : (·, `OF_LEG`) state of each leg after its last march
+    passed : (·, `OUT`) results of each leg's last march
+    found, kept : residual of the last march and of the best unknowns so far, both divided by `rows`
+    slopes, update : Jacobian of `found`, and Newton step, for the unknowns divided by `scale`
     coarse, better : unknowns on coarse segments, and extrapolated unknowns
-    scale, rows : scales of the unknowns and of the residual; every leg has its own scale of forces
+    scale, rows : scales of the unknowns and of the residual
     errors : largest errors of depths [m] and of tensions [N]
     nodes_at : index of the first unknown that belongs to a node
-    length, force : length of the longest leg [m]; a typical force [N]
+    length, force : length of the longest leg [m], and a typical force [N]
     span : reference length for errors of depth [m]
     """
 
@@ -165,29 +156,27 @@ class NetProblem(NamedTuple):
 
 
 class Marching(NamedTuple):
-    """Settings for the march of all legs.
+    """Settings for the march of all legs of a net.
 
     Attributes
     ----------
-    sea : the water
     step : angle step [rad]
-    cuts, given : index of the segment list, and whether the march uses the listed segments;
-        otherwise it chooses segments and writes them to the list
-    exact : whether segments are split at every level. The marches for the Jacobian must split
-        segments like the march at the unchanged unknowns, because a different split has more effect
-        than the small step of an unknown
-    record : index of the record to which shapes are written
-    loose : pull of a slack leg towards its anchor, as a fraction of the leg's force scale. The true
-        value is zero; a search may start with a larger value, so that slack legs determine the
-        direction in which a net drifts
+    cuts, given : segment list, and whether the march uses the listed segments; otherwise it chooses
+        and lists new segments
+    exact : whether segments are split at every level of the water profile
+    record : index of the record for the shapes
+    loose : pull of a slack leg towards its anchor, as a fraction of the leg's force scale; the true
+        value is 0
     """
 
     sea: Sea
     step: float
     cuts: int
     given: bool
+    # a different split would affect the Jacobian more than the small step of an unknown does
     exact: bool
     record: int
+    # at first not 0, so that slack legs determine the direction in which a net drifts
     loose: float
 
 
@@ -223,8 +212,8 @@ def bed_of(net: NetProblem, i: int) -> Bed:
 def above_bed(net: NetProblem, i: int, x: Sequence[float], record: Record, n: int) -> float:
     """Return the height of a node of a leg above the seabed [m].
 
-    The seabed is a plane through the foot of the leg's anchor. If the leg has no anchor, the plane
-    is at the water depth below the origin.
+    The seabed is a plane through the foot of the leg's anchor or, without an anchor, at the water
+    depth below the origin.
     """
     end, level = int(net.state[i][COUNT]) - 1, net.legs[i].seabed
     east, north = record[0][n] - record[0][end], record[1][n] - record[1][end]
@@ -248,18 +237,16 @@ def place_of(net: NetProblem, i: int, x: Sequence[float], end: int) -> tuple[flo
 def end_height(leg: LegRow, lies: bool, pull: float) -> float:
     """Return the height of the lower end of an anchored leg [m].
 
-    A leg on the seabed ends at the seabed; a leg that pulls upwards ends at the top of its anchor.
-    In between, the height is proportional to the pull, up to the weight of a line whose length
-    equals the height of the anchor. The height therefore has no jump, and the solver need not guess
-    where the leg ends.
+    The end rises from the seabed to the top of the anchor, in proportion to the pull.
 
     Parameters
     ----------
-    lies : whether part of the leg lies on the seabed
-    pull : vertical pull on the anchor [N]
+    lies : whether part of the leg lies on the seabed; the end is then on the seabed
+    pull : upward pull on the anchor [N]
     """
     if lies:
         return leg.seabed
+    # without a jump of the height, the solver need not guess where the leg ends
     return leg.seabed + leg.rise * (
         min(max(pull / leg.lifts, 0.0), 1.0) if leg.lifts > 0.0 else 1.0
     )

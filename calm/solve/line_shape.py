@@ -43,12 +43,11 @@ class FoundShape(NamedTuple):
 
     Attributes
     ----------
-    closed : outcome, and size of the shape in the record `FINE`; this record holds the marched
-        shape and, from column `BETTER` on, the extrapolated shape
-    errors : estimated errors, see `calm.solve.accuracy`
-    share, grounded : extrapolated value of the unknown, and extrapolated length on the seabed [m]
+    closed : outcome, and size of the shape in the record `FINE`. From column `BETTER` on, the
+        record holds the extrapolated shape
+    share, grounded : extrapolated value of the line's unknown, and length on the seabed [m]
     closure, moment : residuals found by the audit
-    other : another equilibrium found by the search
+    other : another equilibrium
     """
 
     closed: Closed
@@ -77,12 +76,11 @@ def refused(ending: int, value: float, piece: int, root: Root) -> FoundShape:
 def settle_line(problem: LineProblem, root: Root, hangs: bool) -> FoundShape:
     """Close a line near a coarse root, on sufficiently short segments.
 
-    The shape is written to the record `FINE` and is not yet audited.
+    The shape is written to the record `FINE`, without an audit.
 
     Parameters
     ----------
-    hangs : whether the line must stay clear of the seabed; if so, a shape far below the seabed is
-        rejected
+    hangs : whether the line must stay clear of the seabed
     """
     limits = problem.limits
     coarse = fine = not_closed(NO_SHAPE_NEAR, 0.0, root)
@@ -161,10 +159,8 @@ def lowest_node(problem: LineProblem, record: Record, nodes: int) -> tuple[int, 
 def closed_between(problem: LineProblem, root: Root) -> tuple[Closed, Closed]:
     """Close a line of a batch by linear interpolation, on the chosen and on the halved segments.
 
-    Two shapes on the chosen segments, in the records `OTHER` and `COARSE`, show how every node
-    moves as the unknown changes. Both closed shapes follow from this movement and from one march on
-    the halved segments. The outcome is not `FOUND` if the closed shapes are too far from the
-    marched shapes, or if the line may lie on the seabed.
+    The outcome is not `FOUND` if the closed shapes are too far from the marched shapes, or if the
+    line may lie on the seabed.
     """
     unknown = root.unknown
     limits, work = problem.limits, problem.work
@@ -174,6 +170,7 @@ def closed_between(problem: LineProblem, root: Root) -> tuple[Closed, Closed]:
     high, near, halved = limits.span, 0.5, 1.0
     if unknown.sought != BELOW:  # a slack line moves far for a small change of its buoyancy
         high, near, halved = 1.0, 0.05, 0.1
+    # two shapes on the chosen segments show how every node moves as the unknown changes
     before, last, x = work.left[LAST], root.miss, root.x
     for _ in range(MOST_BETWEEN):
         if not 0.0 < x < high or x == before:
@@ -210,11 +207,11 @@ def closed_between(problem: LineProblem, root: Root) -> tuple[Closed, Closed]:
 def move_shapes(problem: LineProblem, nodes: int, closing: float, halved: float) -> int:
     """Move the shapes `COARSE` and `FINE` by multiples of the change from `OTHER` to `COARSE`.
 
-    The multiples are `closing` for `COARSE` and `halved` for `FINE`.
+    Return the number of nodes of the fine shape.
 
-    Returns
-    -------
-    Number of nodes of the fine shape.
+    Parameters
+    ----------
+    closing, halved : multiples for `COARSE` and for `FINE`
     """
     records, same = problem.work.records, 0
     before, coarse, fine = records[OTHER], records[COARSE], records[FINE]

@@ -12,12 +12,12 @@ from calm.solve.two_speeds import runs_compiled
 def load_line_solver() -> None:
     """Load the compiled solver for moored lines if it pays, and compile it first if necessary.
 
-    Processes forked afterwards share the code. A small line is solved, which loads the code for all
-    lines, since every line is packed into arrays of the same types.
+    Processes forked afterwards share the code.
     """
     settings = Settings()
     if not runs_compiled(settings):
         return
+    # a small line loads the code for all lines, which are packed into arrays of the same types
     zero, none, speed = np.zeros(2), np.zeros(0), np.array([0.2])
     line = Line(
         length=np.array([0.0, 50.0]),

@@ -1,7 +1,7 @@
 """Search for approximate equilibria of a moored line.
 
-Depths of the free end are tried downwards, starting at the top depth of the upright line. If the
-upright line would reach out of the water, floats at the surface are also tried.
+Depths of the free end are tried from the upright line downwards. Floats at the surface are tried if
+the upright line would leave the water.
 """
 
 from math import isnan, nan, sqrt
@@ -63,19 +63,17 @@ WEAK = 0.1
 """Speed, as a fraction of the maximum, below which a change of current direction is ignored."""
 
 Sample = tuple[float, float]
-"""A value of the unknown, and the miss at this value [m]."""
+"""A value of a line's unknown, and the miss at this value [m]."""
 
 
 class CoarseRoots(NamedTuple):
-    """Approximate roots for a line that is clear of the seabed, or that has a touchdown.
+    """Approximate equilibria of a line, either clear of the seabed or with a touchdown.
 
     Attributes
     ----------
-    ending, value : FOUND, or the reason why there is no root (see `calm.solve.solution`), and the
-        number quoted with this reason
+    ending, value : FOUND, or the reason for a failure, and the number quoted with this reason
     root : root of the highest equilibrium
-    other : another root, which is the deepest root of the scan or a root with another used fraction
-        of the float's buoyancy; `found` is false if there is no other root
+    other : another root; not `found` if there is none
     """
 
     ending: int
@@ -85,13 +83,14 @@ class CoarseRoots(NamedTuple):
 
 
 def locate(problem: LineProblem, lands: bool, first: bool) -> CoarseRoots:
-    """Find approximate roots for a line with a touchdown (`lands`), or clear of the seabed.
+    """Find the approximate equilibria of a line, either clear of the seabed or with a touchdown.
 
-    Roots at which the miss grows with depth are unstable and are ignored.
+    Unstable equilibria, at which the miss grows with depth, are ignored.
 
     Parameters
     ----------
-    first : whether to stop at the highest root
+    lands : whether the line has a touchdown
+    first : whether to stop at the highest one
     """
     unknown = whole_line(problem, lands)
     none = Root(False, unknown, nan, nan, nan)
@@ -163,13 +162,9 @@ def sample(problem: LineProblem, unknown: Unknown, count: int, depth: float) -> 
 
 
 def samples_below(problem: LineProblem, unknown: Unknown, count: int) -> int:
-    """Sample the miss at increasing depths of the free end, to separate the roots of the miss.
+    """Sample the miss at increasing depths of the free end, to separate the equilibria.
 
     Return the number of samples, or 0 if a march fails.
-
-    If the current neither grows nor turns with depth, the miss falls by more than the depth
-    increases. There is then at most one root, and an increase in depth by the miss brackets this
-    root. If the current grows or turns significantly, the depths are scanned in equal steps.
     """
     limits = problem.limits
     samples, deepest = problem.work.samples, limits.depth
@@ -194,6 +189,7 @@ def samples_below(problem: LineProblem, unknown: Unknown, count: int) -> int:
                 if isnan(samples[1][k]):
                     return 0
             return count
+    # the current hardly grows, so that the miss falls by more than the depth increases: one root
     shift = limits.allowed
     while high >= 0.0 and low >= 0.0 and depth < deepest:
         shift = max(low, shift)
@@ -206,11 +202,10 @@ def samples_below(problem: LineProblem, unknown: Unknown, count: int) -> int:
 def dip(
     problem: LineProblem, unknown: Unknown, before: Sample, here: Sample, after: Sample
 ) -> Sample:
-    """Search for a sample with the opposite sign near the middle of three samples.
+    """Search for a change of sign of the miss around the middle of three samples.
 
-    There is a search only if the absolute value of the miss is smallest at the middle sample. The
-    search uses the golden-section method. The middle sample is returned if no sample with the
-    opposite sign is found.
+    The search runs only if the absolute miss is smallest in the middle. Return a sample of opposite
+    sign, else the middle sample.
     """
     sign = 1.0 if here[1] > 0.0 else -1.0
     if not 0.0 < sign * here[1] < min(sign * before[1], sign * after[1]):
@@ -232,15 +227,10 @@ def dip(
 
 
 def growth_below(sea: Sea, depth: float) -> float:
-    """Return the largest growth rate of the current with depth, below a given depth [1/m].
+    """Return the relative growth rate of the current below a given depth [1/m].
 
-    The growth rate is relative to the maximum speed. The rate is 0 for a current that only weakens.
-    In a current that turns, the component that is not parallel to the current above counts as
-    growth.
-
-    Parameters
-    ----------
-    depth : depth below which the current is considered [m]
+    The rate is the largest growth per metre, divided by the maximum speed. If the current turns,
+    its component across the current above counts as growth.
     """
     greatest = rise = 0.0
     last = len(sea.intervals) - 1
@@ -315,15 +305,13 @@ def in_sea(problem: LineProblem, sea: Sea) -> LineProblem:
 
 
 def awash(problem: LineProblem, unknown: Unknown, immersed: float) -> Root:
-    """Find the highest root with a float at the surface, for a line with a submerged root, too.
+    """Find the highest equilibrium at the surface, for a line that also has a submerged one.
 
-    Both equilibria are possible if the float has less drag at the surface, or if the wind acts
-    against the current. If a march fails, the root is `found` but its miss is NaN.
+    If a march fails, the root is `found` but its miss is NaN.
 
     Parameters
     ----------
-    immersed : miss with the free end at the surface and all buoyancy in use [m]; it must be at
-        least 0
+    immersed : miss with the free end at the surface and all buoyancy in use [m], at least 0
     """
     none = Root(False, unknown, nan, nan, nan)
     if not problem.limits.rides or len(problem.surfacing) == 0:
@@ -352,16 +340,12 @@ def awash(problem: LineProblem, unknown: Unknown, immersed: float) -> Root:
 def surface_root(problem: LineProblem, unknown: Unknown, deep: float) -> CoarseRoots:
     """Find the equilibrium of a line with one or several floats at the surface.
 
-    The root is the fraction of the lowest float's buoyancy that is in use. The top float is tried
-    first. If the line does not close, or closes only with the next float out of the water, the next
-    float is also placed at the surface. The part of the line between the two floats then determines
-    the used fraction of the upper float's buoyancy, and the used fraction of the next float's
-    buoyancy closes the line. A single float rides at its draft; several floats are assumed just
-    below the surface.
+    The root is the used fraction of the lowest surface float's buoyancy. A single float rides at
+    its draft; several floats are assumed just below the surface.
 
     Parameters
     ----------
-    deep : miss with the free end at the surface and all buoyancy in use [m]; it must be below 0
+    deep : miss with the free end at the surface and all buoyancy in use [m], below 0
     """
     limits = problem.limits
     none = Root(False, unknown, nan, nan, nan)
@@ -392,6 +376,7 @@ def surface_root(problem: LineProblem, unknown: Unknown, deep: float) -> CoarseR
             break
         rides = False
         unknown = with_sought(unknown, k, rides)
+        # the line between two floats at the surface determines the upper float's used buoyancy
         surfaced = surfaced_root(problem, unknown, k + 1)
         if isnan(surfaced.miss) and surfaced.found:
             return stopped(problem, none)
@@ -410,8 +395,7 @@ def surface_root(problem: LineProblem, unknown: Unknown, deep: float) -> CoarseR
 def turns_back(sea: Sea) -> bool:
     """Return whether the current at two depths differs in direction by more than 90°.
 
-    Weak currents are ignored. If the current turns so far, a line at the surface may have several
-    equilibria.
+    Weak currents are ignored.
     """
     last = len(sea.intervals)
     greatest = 0.0
@@ -432,10 +416,10 @@ def turns_back(sea: Sea) -> bool:
 
 
 def roots_afloat(problem: LineProblem, unknown: Unknown) -> tuple[Root, Root]:
-    """Find up to two stable equilibria, whose unknown is the top float's used buoyancy fraction.
+    """Find up to two stable equilibria of a line with its top float at the surface.
 
-    If there are several roots, the first result is the root that is reached as the current rises
-    from zero. If there is only one root, the second result is not `found`.
+    The roots are used fractions of the float's buoyancy. The first root is reached as the current
+    rises from zero; the second may not be `found`.
     """
     lowest, highest = outer_roots(problem, unknown)
     if isnan(lowest.miss) or lowest.x == highest.x:
@@ -459,10 +443,10 @@ def roots_afloat(problem: LineProblem, unknown: Unknown) -> tuple[Root, Root]:
 
 
 def outer_roots(problem: LineProblem, unknown: Unknown) -> tuple[Root, Root]:
-    """Find the stable roots with the smallest and the largest used fraction of buoyancy.
+    """Find the stable equilibria with the smallest and the largest used buoyancy fraction.
 
-    A root is stable if the miss falls as more buoyancy is used. The roots are not `found` if no
-    root is stable; their miss is NaN if a march failed.
+    An equilibrium is stable if the miss falls as more buoyancy is used. Without a stable
+    equilibrium, the roots are not `found` and their miss is NaN.
     """
     lowest = highest = Root(False, unknown, nan, nan, nan)
     share, high = 0.0, coarse_miss(problem, unknown, 0.0)
@@ -496,10 +480,9 @@ def surfaced_root(problem: LineProblem, unknown: Unknown, lower: int) -> Root:
 
 
 def slack_at_rest(problem: LineProblem, unknown: Unknown) -> bool:
-    """Return whether a line in still water is slack with its float at the surface.
+    """Return whether a line with its float at the surface is slack in still water.
 
-    The float uses only the fraction `BuoyantPiece.least` of its buoyancy, which just holds the line
-    upright.
+    The float is assumed to use only the buoyancy fraction `BuoyantPiece.least`.
     """
     assert unknown.sought != BELOW
     least = problem.surfacing[unknown.sought].least

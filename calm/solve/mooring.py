@@ -1,9 +1,7 @@
-"""Static equilibrium of a moored line, and of lines that differ slightly from a solved one.
+"""Static equilibrium of a moored line, and of lines that differ slightly from a solved line.
 
-Two independent solutions divide a line into different segments and have different truncation
-errors, which hides a small change. Here every slightly different line keeps the segments of the
-first line, and its search starts at the root of the first line. Two or three marches close the
-line, and differences between the shapes are derivatives.
+The slightly different lines have the segments of the solved line. Truncation errors therefore
+hardly change, and differences between the shapes are derivatives.
 """
 
 from collections.abc import MutableSequence, Sequence
@@ -56,8 +54,8 @@ SLACK_LINE_CURRENT = 1e-3
 def stirred(water: Water) -> Water | None:
     """Return the water with a weak current at all still levels, or None if no level is still.
 
-    In a still layer, the end of a slack line hangs in a vertical fold. The shape in a weak current
-    approaches this fold.
+    The current gives a direction to a slack line, which would hang in a vertical fold in still
+    water.
     """
     still = np.hypot(water.u, water.v) < SLACK_LINE_CURRENT
     return replace(water, u=np.where(still, SLACK_LINE_CURRENT, water.u)) if still.any() else None
@@ -68,18 +66,17 @@ def solve_mooring(line: Line, water: Water, settings: Settings | None = None) ->
 
     Parameters
     ----------
-    line, water : see `calm.physics.line`
     settings : angle step (1° by default) and tolerance (1e-7 of the water depth by default)
 
     Returns
     -------
-    Solution : the highest equilibrium found. At an angle step of 1°, errors of depths and offsets
-        are at most 5e-5 of the water depth, and relative errors of tensions are at most 2e-4.
+    Solution : the highest equilibrium found. At an angle step of 1°, errors of positions are at
+        most 5e-5 of the water depth, and relative errors of tensions 2e-4.
 
     Raises
     ------
     NoEquilibrium
-        No shape passed every check; the status of the exception is one of `Status`.
+        No shape passed every check; the exception has one of the `Status` labels.
     """
     settings = settings or Settings()
     refuse_endless(line, water)
@@ -182,7 +179,7 @@ WHOLE = (ENDING, PIECE, SOUGHT, RIDES, LANDS, STAGES, NODES, HANGING, LANDED, SE
 
 
 class Nearby:
-    """A moored line and its solution, from which slightly different lines are solved.
+    """A solved moored line, from which slightly different lines are solved.
 
     Parameters
     ----------
@@ -190,7 +187,7 @@ class Nearby:
 
     Attributes
     ----------
-    solution : solution of the line as given
+    solution : solution of the original line
 
     Raises
     ------
@@ -217,7 +214,7 @@ class Nearby:
     def node(self, piece: int, clamp: int = -1) -> int:
         """Return the number of the node at the top of a piece, or at a clamp.
 
-        All lines solved with `shape` or `solved` have the same node numbers.
+        The number holds for all lines solved with this object.
         """
         if clamp >= 0:
             return int(np.argmax(self._trace.clamp == clamp))
@@ -226,10 +223,8 @@ class Nearby:
     def shape(self, line: Line) -> tuple[Floats, float]:
         """Return the node positions and the used buoyancy fraction of a slightly different line.
 
-        Returns
-        -------
-        Positions (k+1, 3) east and north of the anchor and up from the surface [m]. The second
-        result is the used fraction of the surface floats' buoyancy; it is 1 without such floats.
+        The positions (k+1, 3) are east and north of the anchor and up from the surface [m]. The
+        fraction is 1 without floats at the surface.
 
         Raises
         ------
@@ -243,14 +238,13 @@ class Nearby:
         return position, _used(problem, closed, line)
 
     def solved(self, line: Line, water: Water) -> Solution:
-        """Solve a different line on the segments of this line.
+        """Solve a different line on the segments of the original line.
 
-        The error estimates of this line also apply to the result, since the segments are the same.
+        The error estimates remain those of the original line.
 
         Parameters
         ----------
-        line, water : a line of the same pieces, with all cable lengths scaled by the same factor,
-            and its water
+        line : a line of the same pieces, with all cable lengths scaled by one factor
 
         Raises
         ------
@@ -288,7 +282,7 @@ class Nearby:
         return problem, closed
 
     def _moved(self, water: Water, problem: LineProblem) -> Root:
-        """Return the approximate root of this line for water of another depth."""
+        """Return the approximate root of the original line in water of another depth."""
         root, deeper = self._root, water.depth - self._water.depth
         was, x = root.unknown, root.x
         unknown = Unknown(was.goal - deeper, was.sought, was.rides, was.lands, was.stages)
@@ -300,8 +294,11 @@ class Nearby:
 def close_again(problem: LineProblem, root: Root) -> Closed:
     """Close a line near a root, on the segments in the work arrays.
 
-    If no root is known yet (`found` is false), choose segments for the angle step of the final
-    shape, and close the line once on these. The shape is written to the record `FINE`.
+    The shape is written to the record `FINE`.
+
+    Parameters
+    ----------
+    root : approximate root; if not `found`, the segments are chosen anew
     """
     if root.found:
         return polish(problem, root, CHOSEN, FINE)

@@ -1,14 +1,13 @@
 """Equilibrium of a net of legs: lines that are joined at nodes.
 
-Each leg is integrated by the march of a single line. The march starts
+The march of each leg starts
 
-- at the free end of the leg, if there is a free end;
-- at the touchdown or anchor of an anchored leg, and runs upwards;
-- otherwise at the upper end of the leg, with an unknown pull.
+- at the free end, if there is one;
+- at the touchdown or anchor, upwards;
+- otherwise at the upper end, with an unknown pull.
 
-Further unknowns are the depths of the free ends and the positions of the nodes. The conditions are
-that every leg ends at its held position or its node, and that the pulls at every node balance (see
-`calm.solve.leg_marches`).
+The depths of free ends and the positions of nodes are also unknown. Every leg must end at its held
+position or node, and the pulls at every node must balance.
 """
 
 from collections.abc import Callable, Sequence
@@ -48,19 +47,16 @@ successive pulls. Used in the search for a net that is held by slack legs alone.
 
 @dataclass(frozen=True)
 class NetSolution:
-    """A net in equilibrium.
+    """A net of legs in equilibrium.
 
     Attributes
     ----------
-    legs : solution of each leg as a single line, in the coordinates of the net; a leg that hangs
-        from its upper end is listed from its lower end
+    legs : solution of each leg, in the coordinates of the net; a leg with a free lower end starts
+        at this end
     nodes : (n, 3) positions of the nodes [m]
     imbalance : (n,) size of the resultant force at each node [N]
-    miss : largest distance between the end of a leg and its held position or node [m]
-    depth_error, tension_error : estimates of the largest error of any depth [m] and of any tension
-        [N]
-    marches : number of marches
-    unknowns : unknowns of the solution, used to start the search for similar nets
+    miss : largest distance between a leg's end and its held position or node [m]
+    depth_error, tension_error : estimated largest error of depths [m] and of tensions [N]
     """
 
     legs: tuple[Solution, ...]
@@ -94,7 +90,7 @@ class NetSearch:
         self.put_in(water)
 
     def put_in(self, water: Water) -> None:
-        """Replace the water by water with another current but the same depth and density."""
+        """Replace the current around the net; depth and density must stay the same."""
         profile = profile_of(water)
         self.water, self.sea = water, profile.packed if self.compiled else profile.sea
 
@@ -136,7 +132,7 @@ class NetSearch:
         return Marching(self.sea, float(step), cuts, given, given, record, loose)
 
     def closed(self, x: Floats, step: float, enough: float, loose: float = 0.0) -> Floats | None:
-        """Return the unknowns found by Newton's method, or None if the method does not converge.
+        """Return the unknowns of the closed net, or None if Newton's method does not converge.
 
         `loose` is as in `Marching`.
         """
@@ -145,7 +141,7 @@ class NetSearch:
         return found if ending == FOUND else None
 
     def settled(self, x: Floats) -> Floats:
-        """Return the unknowns to full precision, on sufficiently short segments.
+        """Return the unknowns of the closed net to full precision, on sufficiently short segments.
 
         Raise NoEquilibrium if Newton's method does not converge.
         """
@@ -220,15 +216,13 @@ def solve_net(
 
     Parameters
     ----------
-    legs : the legs, whose ends are at nodes, held, or free
-    nodes : number of nodes
-    water, settings : as in `solve_mooring`
-    near : solution of the same net in other water, from which the first search starts
+    nodes : number of nodes that join the legs
+    near : solution of the same net in other water, used as a start
 
     Raises
     ------
     NoEquilibrium
-        No equilibrium was found, or the equilibrium found fails a check.
+        No equilibrium was found, or the equilibrium fails a check.
     """
     settings = settings or Settings()
     count_lines(4.0 * len(legs), CompiledPart.LEGS)
@@ -266,14 +260,17 @@ def with_room(
 def settled_from(net: NetSearch, near: NetSolution | None) -> Floats:
     """Return the unknowns of a net in equilibrium, to full precision.
 
-    If a net in still water is held by slack legs alone, no force determines the direction in which
-    the net drifts. Newton's method then begins with slack legs that pull slightly towards their
-    anchors. This pull is reduced by a factor of ten at a time, or by a smaller factor if the method
-    does not converge. Raise NoEquilibrium if no equilibrium is found.
+    Raise NoEquilibrium if no equilibrium is found.
+
+    Parameters
+    ----------
+    near : another solution of the net, used as a start
     """
     try:
         return net.settled(roughly_closed(net, near))
     except NoEquilibrium as failure:
+        # If only slack legs hold a net in still water, no force determines where the net drifts.
+        # Slack legs therefore pull towards their anchors at first, by ever smaller forces.
         try:
             x, loose, fall = roughly_closed(net, None, LOOSE), LOOSE, FALL
             while loose > TIGHTEST and fall < 0.6:
@@ -289,16 +286,19 @@ def settled_from(net: NetSearch, near: NetSolution | None) -> Floats:
 def roughly_closed(net: NetSearch, near: NetSolution | None, loose: float = 0.0) -> Floats:
     """Return approximate unknowns of a net in equilibrium.
 
-    If another solution is given, the search starts near that solution. Otherwise the current is
-    raised from still water in steps, which leads to the highest equilibrium. If that fails, the
-    search starts from the rest positions of lumped masses released in the current
-    (`calm.solve.net_start`). `loose` is as in `Marching`. Raise NoEquilibrium if all searches fail.
+    Raise NoEquilibrium if all searches fail.
+
+    Parameters
+    ----------
+    near : another solution of the net, used as a start
+    loose : as in `Marching`
     """
     water, step = net.water, 4.0 * net.settings.angle_step
     legs = tuple(each.leg for each in net.laid)
     x = None if near is None else net.closed(near.unknowns, step, leg_closing.NEAR, loose)
     if x is not None:
         return x
+    # raising the current from zero in steps leads to the highest equilibrium
     still, fraction, stride = water.still(), 0.0, 1.0
     net.put_in(still)
     x = net.closed(net.begin(start_of(legs, net.nodes, still)), step, leg_closing.NEAR, loose)
@@ -320,18 +320,10 @@ def roughly_closed(net: NetSearch, near: NetSolution | None, loose: float = 0.0)
 
 
 class NearbyNet:
-    """A solved net, from which nets with one slightly different leg are solved.
+    """A solved net of legs, from which nets with one slightly different leg are solved.
 
-    The segments of the solved net are used for all these nets.
-
-    Parameters
-    ----------
-    legs, nodes, water, settings, near : as in `solve_net`
-
-    Raises
-    ------
-    NoEquilibrium
-        As in `solve_net`.
+    All these nets have the segments of the solved net. The parameters and exceptions are those of
+    `solve_net`.
     """
 
     def __init__(
@@ -353,7 +345,7 @@ class NearbyNet:
     def node(self, leg: int, piece: int, clamp: int = -1) -> int:
         """Return the number of the node at the top of a piece of a leg, or at a clamp.
 
-        All slightly different nets solved with this object have the same node numbers.
+        The number holds for all nets solved with this object.
         """
         each, trace = self._net.laid[leg], self._net.shape(leg, self._x)
         if clamp >= 0:
@@ -366,12 +358,12 @@ class NearbyNet:
     def shape(self, number: int, line: Line, leg: int) -> tuple[Floats, float]:
         """Return the node positions and used buoyancy fraction of a leg, after a change of one leg.
 
-        Two Newton steps with the Jacobian of the original net leave an error of third order in the
-        change. Raise NoEquilibrium if a march fails.
+        The positions (k+1, 3) [m] have an error of third order in the change. Raise NoEquilibrium
+        if a march fails.
 
         Parameters
         ----------
-        number, line : number of the leg that is changed, and its new line
+        number, line : number of the changed leg, and its new line
         leg : number of the leg to return
         """
         net, x = self._net, self._x

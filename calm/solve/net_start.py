@@ -1,7 +1,6 @@
 """Approximate start for a net, from the rest positions of lumped masses on springs.
 
-The march then solves the net accurately from this start. In this approximation, cables stretch by a
-few percent, and tangential friction is ignored.
+The springs stretch by a few percent, and tangential friction is ignored.
 """
 
 from __future__ import annotations
@@ -31,9 +30,8 @@ class NetStart(NamedTuple):
     Attributes
     ----------
     nodes : (n, 3) positions of the nodes [m]
-    first : (k, 3) position of each leg's upper end [m]
+    first, lower : (k, 3) positions of each leg's upper and lower ends [m]
     pull : (k, 3) force on each leg's upper end [N]
-    lower : (k, 3) position of each leg's lower end [m]
     held : (k, 3) force on each leg's lower end [N], computed without support by the seabed
     """
 
@@ -181,8 +179,8 @@ class _Lumps:
 def _points(line: Line, water: Water) -> list[tuple[float, float, float, float]]:
     """List the bodies on a line for the lumped masses.
 
-    Each has a distance from the top [m], a net force [N], and two drag factors per squared speed:
-    for flow across the axis only, and for flow in any direction.
+    A body has a distance from the top [m], a net force [N], and two drag factors per squared speed:
+    for flow across the line, and for any direction.
     """
     found, top = [], 0.0
     density = water.density_at(np.array(0.5 * water.depth))

@@ -1,4 +1,4 @@
-"""A line prepared for the search, as plain numbers and work arrays."""
+"""A line prepared for the search of its shape, as plain numbers and work arrays."""
 
 from collections.abc import MutableSequence, Sequence
 from itertools import accumulate
@@ -62,8 +62,11 @@ CHOSEN, HALVED = range(2)
 """Segment lists: chosen by the march, and halved."""
 NOT_RECORDED = -1
 MARCHES, CHANGED, LAST = range(LEFT, LEFT + 3)
-"""Indices into `SearchArrays.left`, after the results of a march: number of marches of the whole
-line, number of loads changed for floats at the surface, and unknown of the last march.
+"""Indices into `SearchArrays.left`, after the results of a march.
+
+- MARCHES: number of marches of the whole line
+- CHANGED: number of loads changed for floats at the surface
+- LAST: value of the line's unknown in the last march
 """
 
 
@@ -72,14 +75,11 @@ class BuoyantPiece(NamedTuple):
 
     Attributes
     ----------
-    piece : index of the piece in the line
-    load, stage : index of the piece's load in the course, and index of its stage
-    length : length of the piece [m]
+    load, stage : index of the piece's load, and of the piece's stage, in the `Course`
     rigid_above : length of the rigid pieces directly above this piece [m]
-    upto : length of the line from the top of the line to the lower end of the piece [m]
-    surface_lift : net buoyancy of the piece in water with the density at the surface [N]
-    least : smallest fraction of the piece's buoyancy that holds the line below it upright in still
-        water [-]
+    upto : length of the line from its top to the lower end of the piece [m]
+    surface_lift : net buoyancy in water at the surface [N]
+    least : smallest fraction of the buoyancy that holds the line below upright in still water [-]
     """
 
     piece: int
@@ -93,27 +93,20 @@ class BuoyantPiece(NamedTuple):
 
 
 class Limits(NamedTuple):
-    """Limits and settings of the search for a line.
+    """Limits and settings of the search for a line's shape.
 
     Attributes
     ----------
-    span : reference length [m], which is the water depth or, for a tow, the length of the line
-    depth : water depth [m]
-    anchor_height : height of the top of the anchor above the seabed [m]
+    span : reference length [m]: the water depth or, for a tow, the line length
+    depth, anchor_height : water depth, and height of the anchor's top above the seabed [m]
     angle_step, coarse_step : largest rotation of a segment in the final shape, and in the search
         [rad]
-    allowed : largest allowed miss of a solution [m]
-    share_allowed : tolerance for the used fraction of a float's buoyancy [-]
-    bed : the seabed
-    near : as in `MarchSettings`; if it is not 0, the line is solved in a batch, without an audit
-    length, standing : unstretched length of the line, and length of the upright line in still water
-        [m]
+    allowed : largest allowed miss of a solution (see `calm.solve.closing`) [m]
+    near : as in `MarchSettings`; not 0 in a batch, which is not audited
+    length, standing : unstretched length, and length upright in still water [m]
     lift : net buoyancy of the whole line [N]
     rides : whether the draft of the top float can be computed
-    at_rest : whether there is neither current nor wind
-    blown : whether there is wind
-    refused, refused_at_rest : result of `support_of` with current or wind, and result at rest. The
-        line is rejected without a search if the result that applies is not `SUPPORTED`
+    refused, refused_at_rest : results of `support_of` in a current or wind, and at rest
     """
 
     span: float
@@ -140,18 +133,15 @@ class SearchArrays(NamedTuple):
 
     Attributes
     ----------
-    left : results of the last march (see `calm.physics.passing`), followed by the values with
-        indices `MARCHES` to `LAST`
+    left : results of the last march (see `calm.physics.passing`), then those at `MARCHES` to `LAST`
     chosen : unstretched lengths of the segments chosen by the march [m]
     counts : number of segments in each cable
-    records : records of shapes, indexed by `COARSE` to `OTHER`
-    shares : four rows with a value for each float at the surface. The rows hold the used fraction
-        of buoyancy, the slope of the miss with respect to this fraction, and the used fractions for
-        the records `KEPT` and `OTHER`
-    samples : sampled values of the unknown, and the misses at these values
-    even : work array for the intervals of a uniform or weaker current
-    elements : (3, n) work array for the loads of every element of a shape
-    found : results of the search, see `calm.solve.mooring.write_found`
+    records : shapes of the line, indexed by `COARSE` to `OTHER`
+    shares : rows with a value for each surface float: used buoyancy fraction, slope of the miss
+        with respect to this fraction, and used fractions in the records `KEPT` and `OTHER`
+    samples : sampled values of the line's unknown, and the misses at these values
+    elements : (3, n) loads of every element
+    found : results, see `calm.solve.mooring.write_found`
     """
 
     left: MutableSequence[float]
@@ -170,14 +160,11 @@ class LineProblem(NamedTuple):
 
     Attributes
     ----------
-    course : the line, with its loads reduced for floats at the surface
-    sea : the water
-    loads : the same loads without this reduction
-    flexible : whether each piece is a cable or chain
+    course : the line as the march uses it, with loads reduced for floats at the surface
+    loads : the loads without this reduction
     surfacing : the rigid buoyant pieces, from the top down
-    afloat, hull : the float that may ride at the surface, and the rows of its hull table
-    limits, work : limits and work arrays of the search
-    starts : solutions in uniform currents of increasing speed, see `calm.solve.starts`
+    afloat, hull : the float that may ride at the surface, and its hull table
+    starts : solutions from `calm.solve.starts`
     """
 
     course: Course
@@ -193,15 +180,15 @@ class LineProblem(NamedTuple):
 
 
 class Unknown(NamedTuple):
-    """Unknown used to close a line: depth of the free end, or used fraction of a float's buoyancy.
+    """Unknown that closes a line: depth of its free end, or used fraction of a float's buoyancy.
 
     Attributes
     ----------
     goal : height above the surface at which the line must end [m]
-    sought : the float whose used fraction is unknown; all floats above this float are also at the
-        surface. `BELOW` if the depth of the free end is unknown
-    rides : whether the float rides at its draft; otherwise the float is just below the surface
-    lands : whether the line may have a touchdown before its end
+    sought : float with the unknown fraction, the lowest at the surface; `BELOW` if the depth is
+        unknown
+    rides : whether the float rides at its draft; otherwise it is just below the surface
+    lands : whether the line may have a touchdown
     stages : number of stages to march
     """
 
@@ -216,15 +203,14 @@ BELOW = -1
 
 
 class About(NamedTuple):
-    """Arguments of a march, without the value of the unknown.
+    """Arguments of a march, without the value of the line's unknown.
 
     Attributes
     ----------
     step : angle step [rad]
-    cuts : index of the segment list, CHOSEN or HALVED
-    given : whether the march uses the segments in this list; otherwise it chooses segments and
-        writes them to the list
-    record : index of the record to which the shape is written, or `NOT_RECORDED`
+    cuts : segment list, `CHOSEN` or `HALVED`
+    given : whether to use the listed segments; otherwise the march chooses and lists new segments
+    record : record for the shape, or `NOT_RECORDED`
     """
 
     problem: LineProblem
@@ -245,15 +231,13 @@ def problem_of(
     room: int = ROOM,
     intervals: int = 0,
 ) -> LineProblem:
-    """Prepare a line and its water for the search.
+    """Prepare a line and its water for the search of its shape.
 
     Parameters
     ----------
-    compiled : whether the problem is for compiled code; all sequences are then arrays
-    rough : whether the line is solved in a batch, without an audit
-    room : number of segments that the work arrays hold
-    intervals : largest number of depth intervals in any other water in which the line will be
-        solved
+    compiled : whether to prepare arrays, as compiled code requires
+    rough : whether the line belongs to a batch, which is not audited
+    intervals : largest number of depth intervals in any water to be solved
     """
     profile = profile_of(water)
     span = float(line.length.sum()) if line.towed else water.depth

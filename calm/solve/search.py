@@ -1,8 +1,4 @@
-"""The complete search for a moored line, from the problem to a shape that has passed every check.
-
-An approximate shape, clear of the seabed or with a touchdown, is closed on fine segments. The
-result is checked for parts out of the water or below the seabed, and audited.
-"""
+"""The complete search for a moored line's shape, with all checks and the audit."""
 
 from collections.abc import MutableSequence, Sequence
 from math import isnan, nan, sqrt
@@ -78,7 +74,6 @@ class Referee(NamedTuple):
     ----------
     moored : the line with the loads of the solution, and its water
     bodies : the bodies of the line, with full loads even for floats at the surface
-    first, last : work arrays for the nodes of every piece
     """
 
     moored: Moored
@@ -88,7 +83,7 @@ class Referee(NamedTuple):
 
 
 def find_shape(problem: LineProblem, referee: Referee) -> FoundShape:
-    """Find a shape clear of the seabed or with a touchdown. The likelier kind is tried first."""
+    """Find the shape of a line clear of the seabed or with a touchdown, the likelier kind first."""
     limits = problem.limits
     may_land = problem.course.landing < len(problem.course.stages)
     lands_first = may_land and limits.length > limits.depth
@@ -112,8 +107,8 @@ def find_shape(problem: LineProblem, referee: Referee) -> FoundShape:
 def rising(problem: LineProblem, referee: Referee) -> FoundShape:
     """Find the shape of a line that may touch the seabed but clearly rises from its anchor.
 
-    The line belongs to a batch. A line that descends anywhere, such as a line with a sag, is
-    rejected here, since it could also lie on the seabed.
+    The line belongs to a batch. A line that descends anywhere is rejected, since such a line could
+    also lie on the seabed.
     """
     lying, start = start_of(problem, True), start_of(problem, False)
     found = refused(NO_SHAPE_NEAR, 0.0, -1, start)
@@ -156,7 +151,9 @@ def other_of(problem: LineProblem, found: FoundShape) -> OtherEquilibrium:
 def highest(problem: LineProblem, referee: Referee, lands: bool) -> FoundShape:
     """Find the highest shape of one kind, and attach the deepest shape if it differs.
 
-    If `lands` is true, the shapes have a touchdown; otherwise they are clear of the seabed.
+    Parameters
+    ----------
+    lands : whether the shapes have a touchdown; otherwise they are clear of the seabed
     """
     if not lands and problem.limits.lift <= 0.0:
         nowhere = Root(False, whole_line(problem, lands), nan, nan, nan)
@@ -216,9 +213,13 @@ def load_again(problem: LineProblem, found: FoundShape) -> None:
 
 
 def shape_near(problem: LineProblem, referee: Referee, root: Root, lands: bool) -> FoundShape:
-    """Return the audited shape near an approximate root, with or without a touchdown (`lands`).
+    """Return the audited shape near an approximate root.
 
-    If only little of the line lies on the seabed, a shape clear of the seabed is also sought.
+    If little of the line lies on the seabed, a shape clear of the seabed is also sought.
+
+    Parameters
+    ----------
+    lands : whether the root has a touchdown
     """
     limits = problem.limits
     if not lands:
@@ -281,10 +282,7 @@ def audited(problem: LineProblem, referee: Referee, found: FoundShape) -> FoundS
 
 
 def audit_shape(problem: LineProblem, referee: Referee, closed: Closed) -> tuple[float, float]:
-    """Return two residuals of the shape in the record `FINE`.
-
-    They are the relative force imbalance and the moment residual.
-    """
+    """Return the relative force imbalance and the moment residual of the shape in record `FINE`."""
     record, elements = problem.work.records[FINE], problem.work.elements
     shape = RefereeShape(record, closed.nodes, closed.hanging, referee.first, referee.last)
     take_loads(problem, referee)
@@ -303,7 +301,7 @@ def residuals(
     Parameters
     ----------
     elements : (3, n) work array for the loads of every element
-    landed : whether the shape lies on the seabed at its end
+    landed : whether the shape ends on the seabed
     """
     find_ends(shape)
     element_loads(moored, shape, elements)
@@ -340,11 +338,14 @@ def stated_errors(problem: LineProblem, found: FoundShape) -> Errors:
 
 
 def misplaced(problem: LineProblem, closed: Closed, depth_error: float) -> tuple[int, float]:
-    """Find a piece out of the water or below the seabed.
+    """Find a piece of a line that is out of the water or below the seabed.
 
-    Return the index of the piece and its height [m], which is positive above the surface and
-    negative below the seabed. The index is -1 if there is no such piece. A float at the surface may
-    extend above the surface by its length, whatever its inclination.
+    A float at the surface may stick out by its length.
+
+    Returns
+    -------
+    Index of the piece, or -1, and its height [m]: above the surface if positive, else below the
+    seabed.
     """
     record = problem.work.records[FINE]
     margin = max(depth_error, 1e-6 * problem.limits.depth)
@@ -366,9 +367,9 @@ def misplaced(problem: LineProblem, closed: Closed, depth_error: float) -> tuple
 
 
 def take_loads(problem: LineProblem, referee: Referee) -> None:
-    """Set the loads of the audit bodies to the loads in this solution.
+    """Set the loads of the audit bodies to the loads in the solution.
 
-    These differ from the full loads if floats are at the surface.
+    Loads of floats at the surface are reduced.
     """
     bodies, pieces = referee.moored.bodies, referee.moored.pieces
     for k in range(len(referee.bodies)):

@@ -20,16 +20,14 @@ LOOSEST_TOLERANCE = 2e-4
 
 @dataclass(frozen=True)
 class Settings:
-    """Settings of the solver: step size and tolerance of the march, friction, and compilation.
+    """Settings of the solver.
 
     Attributes
     ----------
-    angle_step : largest rotation of a segment [rad]
-    tolerance : allowed vertical distance between the end of the line and the anchor, as a fraction
-        of the water depth
+    angle_step : largest rotation of a segment of the line [rad]
+    tolerance : allowed height error at the line's end, as a fraction of the water depth
     seabed_friction : friction coefficient of a line on the seabed [-]
-    compiled : whether to use the compiled solver (true) or the interpreted solver (false); the
-        results are identical. None leaves the choice to `calm.solve.two_speeds`
+    compiled : whether to use the compiled solver; None leaves the choice to `calm.solve.two_speeds`
     """
 
     angle_step: float = radians(1.0)
@@ -53,10 +51,8 @@ class OtherEquilibrium(NamedTuple):
     ----------
     depth : depth of the free end [m]; negative if there is no other equilibrium
     grounded_length : length on the seabed [m]
-    used_buoyancy : used fraction of the buoyancy of the float at the surface; 1 if the float is
-        submerged
-    anchor_vertical, anchor_horizontal : upward and horizontal components of the force at the line's
-        end [N]
+    used_buoyancy : used fraction of the surface float's buoyancy; 1 if submerged
+    anchor_vertical, anchor_horizontal : upward and horizontal force at the line's end [N]
     """
 
     depth: float
@@ -70,43 +66,33 @@ class OtherEquilibrium(NamedTuple):
 class Solution:
     """A line in equilibrium, as k elements between k + 1 nodes; the free end comes first.
 
+    Positions and forces are extrapolated to zero segment length.
+
     Attributes
     ----------
-    line, water, settings : the solved problem; for a tow, the line is listed from its free end, and
-        the current is relative to the ship
-    position : (k+1, 3) position of each node, east and north of the anchor or tow point, and up
-        from the surface [m]; positions, forces and tensions are extrapolated from two shapes
-    force : (k+1, 3) sum of all external forces on the free-end side of a node [N]
-    element_piece : (k,) index of the piece that each element belongs to
-    element_clamp : (k,) index of the clamp if the element represents a clamp and has no length,
-        otherwise -1
-    landed : whether part of the line lies on the seabed
-    hanging : number of suspended elements; the other elements lie on the seabed
-    grounded_length : unstretched length on the seabed [m]
-    cut : (k,) unstretched length of each element [m]
-    strain : (k,) strain of each element; 0 for rigid pieces and clamps
-    afloat : indices of the pieces that float at the surface; empty for a subsurface line
-    buoyancy_used : fraction of the surface floats' buoyancy that the line uses
-    reserve : unused buoyancy of the surface floats [N]
-    carried : the line with the buoyancy and drag in effect, which are reduced for floats at the
-        surface
-    riding : draft of the float at the surface, and the forces on this float; None if no draft is
-        computed
-    marches, segments : number of marches and number of segments used for this solution
-    miss : height of the line's end above the top of the anchor or, for a tow, above the tow point
-        [m]
-    closure : relative force imbalance, |recomputed sum of the loads - force at the line's end| /
-        |force at the line's end|
+    line, water, settings : the solved problem; for a tow, the current is relative to the ship
+    position : (k+1, 3) east and north of the anchor or tow point, and up from the surface [m]
+    force : (k+1, 3) sum of the external forces between the free end and each node [N]
+    element_piece : (k,) index of each element's piece
+    element_clamp : (k,) index of the clamp that an element without length represents, else -1
+    landed, grounded_length : whether part of the line lies on the seabed, and its unstretched
+        length [m]
+    hanging : number of suspended elements, which come first
+    cut, strain : (k,) unstretched length [m] and strain of each element
+    afloat : indices of the pieces at the surface
+    buoyancy_used, reserve : used fraction and unused amount [N] of the surface floats' buoyancy
+    carried : the line, with buoyancy and drag reduced for floats at the surface
+    riding : draft of the surface float and the forces on this float, if computed
+    miss : height of the line's end above its target (anchor top, seabed or tow point) [m]; absolute
+        for a tow
+    closure : relative force imbalance, |sum of the loads - end force| / |end force|
     moment_residual : largest deviation of an element's axis from its moment balance [rad]
-    depth_error, tension_error : estimates of the largest error of any depth or offset [m] and of
-        any tension [N]
-    lift_error, pull_error : estimated errors of the upward and horizontal components of the force
-        at the line's end [N]
-    other : another equilibrium that the solver found, or None
-    frequency : strumming frequency of the cables [Hz]; 0 without strumming
-    pulled : whether a force acts on the first end of the line, as on a leg of a net
-    marched : solution with the finer of the two shapes, which passed the audit; None if nothing was
-        extrapolated
+    depth_error, tension_error : estimated largest error of depths and offsets [m], and of tensions
+        [N]
+    lift_error, pull_error : estimated error of the upward and horizontal end force [N]
+    frequency : strumming frequency [Hz]; 0 without strumming
+    pulled : whether a force acts on the first end, as on a leg of a net
+    marched : the audited shape before extrapolation; None if nothing was extrapolated
     slack : length on the seabed minus the distance to the anchor, for a slack leg [m]
     """
 
@@ -144,7 +130,7 @@ class Solution:
 
     @property
     def as_marched(self) -> "Solution":
-        """The solution with the shape on fine segments, which was audited before extrapolation."""
+        """The solution with the audited shape, before extrapolation."""
         closed = self.marched
         if closed is None:
             return self
@@ -234,8 +220,8 @@ class Status(Enum):
         Parameters
         ----------
         message : reason, in which `{piece}` stands for the piece concerned
-        piece : index of the piece concerned, if any
-        advice : advice that replaces the default advice of this status, which applies to moorings
+        piece : index of this piece
+        advice : replaces the default advice, which applies to moorings
         """
         return NoEquilibrium(self.label, message, self.advice if advice is None else advice, piece)
 
@@ -262,10 +248,10 @@ class Status(Enum):
 
 @once_at_rest
 def standing_lift(line: Line, water: Water) -> Floats:
-    """Return the net buoyancy (n,) of every piece of an upright line, with its clamps [N].
+    """Return the net buoyancy (n,) of each piece and its clamps in an upright line [N].
 
-    Net buoyancy is positive up. The line stands upright and unstretched on its anchor. Parts that
-    would be out of the water are assumed just below the surface.
+    Net buoyancy is positive up. The line is unstretched, and parts above the water count as
+    submerged.
     """
     below = np.cumsum(line.length[::-1])[::-1] - 0.5 * line.length
     depth = np.maximum(water.depth - line.anchor_height - below, 0.0)
@@ -306,14 +292,16 @@ SUPPORTED, TOO_HEAVY, FOLDS = range(3)
 def support_of(lift: Floats, at_rest: bool) -> tuple[int, int, float]:
     """Check whether a line has enough buoyancy.
 
-    Return the outcome (`SUPPORTED`, `TOO_HEAVY` or `FOLDS`), the index of the piece below which the
-    line folds (-1 if the line does not fold), and the missing buoyancy [N].
-
     Parameters
     ----------
     lift : result of `standing_lift`
-    at_rest : whether there is neither current nor wind; if so, each part down to the lowest float
-        must be held up
+    at_rest : whether there is neither current nor wind; each part above the lowest float must then
+        be held up
+
+    Returns
+    -------
+    `SUPPORTED`, `TOO_HEAVY` or `FOLDS`; piece below which support ends, or -1; missing buoyancy
+    [N].
     """
     lifts = lift.tolist()
     above = list(accumulate(lifts))
@@ -331,8 +319,6 @@ def support_of(lift: Floats, at_rest: bool) -> tuple[int, int, float]:
 
 def refuse_unsupported(line: Line, water: Water) -> None:
     """Raise NoEquilibrium if a line has too little buoyancy, or folds in still water.
-
-    In still water, the line must be held up from its first buoyant part down to its lowest float.
 
     Raises
     ------

@@ -1,7 +1,6 @@
 """Start values for the profiles of a batch, from solutions in uniform currents.
 
-The start depends on the profile alone. The results are thus identical to the last digit in any
-order of the profiles, and in any batch.
+A start depends on its profile alone, so that the order of the profiles does not affect the results.
 """
 
 from collections.abc import Sequence
@@ -35,11 +34,15 @@ lower equilibrium.
 def fill_starts(problem: LineProblem) -> int:
     """Solve a line in uniform currents, and return the number of solutions found.
 
-    The solutions are written to the seven rows of `LineProblem.starts`: three rows for a line clear
-    of the seabed, three for a line with a touchdown, and one for the results of `lean_of`. Each
-    set of three rows holds the root of the search, the slope of the closing error at the root, and
-    the knockdown [m]. A root of at least 0 is the depth of the free end [m]. If the root is
-    negative, the root plus one is the used fraction of buoyancy.
+    The solutions are written to `LineProblem.starts`:
+
+    - rows 0 to 2: line clear of the seabed
+    - rows 3 to 5: line with a touchdown
+    - row 6: results of `lean_of`
+
+    The three rows of a line hold its roots, the slopes of the miss, and the knockdowns [m]. A root
+    of at least 0 is the depth of the free end [m]; a negative root is the used buoyancy fraction
+    minus 1.
     """
     found = 0
     limits, starts = problem.limits, problem.starts
@@ -71,7 +74,7 @@ def fill_starts(problem: LineProblem) -> int:
 def start_of(problem: LineProblem, lands: bool) -> Root:
     """Return the approximate root from which a search starts.
 
-    The root is not `found` if the line needs the complete search.
+    The root is not `found` if the complete search is needed.
     """
     limits = problem.limits
     unknown = whole_line(problem, lands)
@@ -99,11 +102,7 @@ def start_of(problem: LineProblem, lands: bool) -> Root:
 
 
 def is_highest(problem: LineProblem, root: Root) -> bool:
-    """Return whether an equilibrium near its start value is surely the highest equilibrium.
-
-    This is certain if the current does not grow significantly with depth. Otherwise the knockdown
-    with the free end at shallower depths is estimated, and compared with the knockdown found.
-    """
+    """Return whether an equilibrium near its start value is surely the highest equilibrium."""
     limits, starts = problem.limits, problem.starts
     if root.unknown.sought != BELOW:
         return root.x < IMMERSION_SHARE and not turns_back(problem.sea)
@@ -116,6 +115,7 @@ def is_highest(problem: LineProblem, root: Root) -> bool:
         <= LEAST_CURRENT_GROWTH
     ):
         return root.x > 0.0
+    # compare the knockdown with those estimated for shallower free ends
     fell, there = root.x - upright, expected(problem, row, upright, root.x)[0] - upright
     if not fell > 0.0:
         return root.x > 0.0
@@ -128,16 +128,18 @@ def is_highest(problem: LineProblem, root: Root) -> bool:
 
 
 def expected(problem: LineProblem, row: int, upright: float, top: float) -> tuple[float, float]:
-    """Interpolate the unknown of a line and the slope of the miss between uniform currents.
-
-    The uniform current is chosen to incline the line as much as the actual current does.
+    """Estimate a line's free-end depth or used buoyancy from its solutions in uniform currents.
 
     Parameters
     ----------
-    row : index in `starts` of the first row for this kind of line
-    upright, top : depth of the free end in still water, and depth of the free end after knockdown
-        [m]
+    row : first row of `LineProblem.starts` for this kind of line
+    upright, top : depth of the free end in still water, and after knockdown [m]
+
+    Returns
+    -------
+    Root, coded as in `fill_starts`, and slope of the miss.
     """
+    # the uniform current that inclines the line as much as the actual current does
     starts = problem.starts
     lean = lean_of(problem.course, problem.sea, top, problem.limits.depth, upright > 0.0)
     at = sqrt(sqrt(lean / starts[LEAN_ROW][STARTS - 1])) * (STARTS - 1)
@@ -163,15 +165,14 @@ def between(row: Sequence[float], k: int, share: float) -> float:
 def lean_of(course: Course, sea: Sea, top: float, depth: float, taut: bool) -> float:
     """Return the approximate knockdown [m] of a line that the current inclines slightly.
 
-    The inclination at a point is the drag on the part above, divided by the tension at the point.
-    The knockdown is proportional to the square of the inclination. In a uniform current the
-    knockdown is thus proportional to the fourth power of the speed.
+    The inclination at a point is the drag on the part above, divided by the tension. The knockdown
+    in a uniform current is proportional to the fourth power of the speed.
 
     Parameters
     ----------
     top, depth : depth of the top of the line, and water depth [m]
-    taut : whether all the buoyancy is in use; otherwise only the drag on the cables is included,
-        and the result is correct only up to a constant factor
+    taut : whether all buoyancy is in use; otherwise only cable drag counts, and the result is
+        correct up to a constant factor
     """
     length = 0.0
     for i in range(len(course.stages)):

@@ -1,8 +1,7 @@
 """Steady shape of a line towed by a ship.
 
-A tow is treated as a leg of a net, held at the ship, and `calm.solve.net` closes this net. This
-module finds the approximate depth of the free end. It makes rough marches from ever shallower free
-ends, until the upper end of the line reaches the tow point.
+A tow is solved as a leg of a net that is held at the ship (`calm.solve.net`). This module first
+finds the approximate depth of the free end.
 """
 
 from dataclasses import dataclass, replace
@@ -65,10 +64,10 @@ class Towing:
 
     Attributes
     ----------
-    east, north : velocity of the ship over the ground, to the east and north [m/s]
+    east, north : velocity of the ship over the ground [m/s]
     height : height of the tow point above the surface [m]
-    wind : wind velocity to the east and north [m/s], for the part of the line above water
-    in_air : whether the whole line is in air; the object of class `Water` then describes the air
+    wind : wind velocity to the east and north [m/s]
+    in_air : whether the whole line is in air; its `Water` then describes the air
     """
 
     east: float
@@ -87,23 +86,21 @@ def solve_tow(
     ----------
     line : the line from the ship to the towed body
     water : water with the current over the ground; its depth is inf if the seabed is ignored
-    towing : motion of the ship and height of the tow point
-    settings : angle step (1° by default), and tolerance as a fraction of the paid-out length (1e-7
-        by default)
+    settings : angle step (1° by default) and tolerance (1e-7 of the paid-out length by default)
 
     Returns
     -------
-    Solution : the line is listed from its free end, so that piece 0 of the solution is the last
-        piece of `line`; x and y are relative to the tow point. If there are several equilibria, the
-        result is the deepest equilibrium, which an accelerating ship reaches first. At an angle
-        step of 1°, errors of positions are at most 5e-5 of the paid-out length, and relative errors
-        of tensions are at most 2e-4.
+    Solution : the deepest equilibrium, which an accelerating ship reaches first. Piece 0 is the
+        last piece of `line`; x and y are relative to the tow point. At an angle step of 1°, errors
+        of positions are at most 5e-5 of the paid-out length, and relative errors of tensions 2e-4.
 
     Raises
     ------
     NoEquilibrium
-        ``above-surface`` if a part would leave the water; ``grounded`` if a part would touch the
-        seabed; ``not-converged`` if no shape passes every check.
+        - ``above-surface`` or ``grounded`` if a part would leave the water or touch the seabed
+        - ``no-equilibrium`` if the free end is limp, or a rigid piece or clamp half out of the
+          water
+        - ``not-converged`` if no shape passes every check
     """
     if not line.length.any():
         raise Status.NO_EQUILIBRIUM.because("The towed line has no length.", advice=PAY_OUT)
@@ -139,14 +136,14 @@ def _refuse_limp(line: Line) -> None:
 
 
 def _relative(line: Line, water: Water, towing: Towing) -> Water:
-    """Return the water as seen from the ship, with air above it if the tow point is in air.
+    """Return the water as seen from the ship, with air above if the tow point is in air.
 
-    Flow and density change between water and air over a thin band about the surface. It is thin
-    enough not to change the shape, and smooth enough for the march.
+    Flow and density change between water and air over a thin band at the surface.
     """
     u, v = water.u - towing.east, water.v - towing.north
     if towing.in_air or towing.height == 0.0:
         return replace(water, u=u, v=v)
+    # thin enough not to change the shape, and smooth enough for the march
     half = 0.5 * SURFACE_BAND * float(line.length.sum())
     below = water.level > half
     density = water.density_at(np.array(half))
@@ -169,12 +166,12 @@ def _relative(line: Line, water: Water, towing: Towing) -> Water:
 
 
 class _Marches:
-    """Marches of a towed line from a given depth of its free end.
+    """Marches of a towed line from given depths of its free end.
 
     Parameters
     ----------
     step : angle step [rad]
-    kept : the segments that are used, `CHOSEN` or `HALVED`; None if each march chooses its own
+    kept : segment list to use, `CHOSEN` or `HALVED`; None if each march chooses its segments
     """
 
     def __init__(self, net: NetSearch, step: float, kept: int | None = None) -> None:
@@ -194,7 +191,7 @@ class _Marches:
 
 
 def _solved(net: NetSearch, towing: Towing) -> tuple[NetSolution, float | None]:
-    """Find the deepest equilibrium, and the depth of the free end in the next higher one [m]."""
+    """Find the deepest equilibrium, and the free end's depth in the second deepest [m]."""
     rough = _Marches(net, max(COARSE_STEP, 2.0 * net.settings.angle_step))
     start, other_depth = _locate(rough, towing)
     how = net.marching(net.settings.angle_step, CHOSEN, FINE, given=False)
@@ -210,7 +207,7 @@ def _lacking(net: NetSearch) -> bool:
 
 
 def _locate(rough: _Marches, towing: Towing) -> tuple[float, float | None]:
-    """Find the depth of the free end at the deepest root, and at the next higher root [m]."""
+    """Find the approximate depths [m] of the free end in the two deepest equilibria."""
     span = rough.span
     found: list[float] = []
     allowed = rough.net.settings.tolerance * span
@@ -282,11 +279,11 @@ def _refuse_stopped(rough: _Marches, miss: float) -> None:
 
 
 def _why_not(rough: _Marches, start: float, last: float, towing: Towing) -> NoEquilibrium:
-    """Diagnose why a tow does not close near a rough root.
+    """Diagnose why no exact equilibrium of a tow was found.
 
     Parameters
     ----------
-    start, last : depth of the free end at the rough root, and in the last attempt [m]
+    start, last : approximate depth of the free end, and depth in the last attempt [m]
     """
     net, nearly_out = rough.net, LEAVING_DEPTH * rough.span
     stopped, lacking = net.net.lines.work.left[0][FAILURE], _lacking(net)
@@ -314,15 +311,13 @@ def _why_not(rough: _Marches, start: float, last: float, towing: Towing) -> NoEq
 def _half_out(net: NetSearch, depth: float, lacking: bool) -> NoEquilibrium | None:
     """Diagnose a rigid piece or a clamp that would be half out of the water, or return None.
 
-    Such a body is treated as either in the water or in air, by the position of its midpoint.
-    When the midpoint crosses the surface, the miss or the frequency jumps. If the line closes in
-    neither state, the body would be half out of the water.
-
     Parameters
     ----------
     depth : depth of the free end in the last attempt to close the line [m]
-    lacking : whether the frequency did not converge there
+    lacking : whether the strumming frequency did not converge there
     """
+    # The march treats a body as wholly in water or wholly in air, by the position of its midpoint.
+    # The miss or the frequency therefore jumps if the midpoint crosses the surface.
     step, flexible = net.settings.angle_step, net.laid[0].line.flexible
     for kept in (_Marches(net, 2.0 * step, CHOSEN), _Marches(net, step, HALVED)):
         beside = NARROW_JUMP * kept.span

@@ -1,9 +1,8 @@
 """Choice between the interpreted solver and the solver compiled by LLVM.
 
-Both solvers give the same digits. Compiled code is loaded from the cache as soon as this saves
-time. If the cache contains no compiled code, the solver is compiled as soon as this saves time.
-Compilation takes less than a second. `CALM_COMPILED=never` and `always`, and the attribute
-`compiled` of `Settings`, override this choice.
+Both solvers give the same digits. The compiled solver is used, and compiled first if needed, as
+soon as this saves time. `CALM_COMPILED=never` and `always`, and the attribute `compiled` of
+`Settings`, override this choice.
 """
 
 import os
@@ -85,12 +84,12 @@ def runs_compiled(
 
 
 def count_lines(lines: float, solver: CompiledPart, work: float | None = None) -> None:
-    """Count lines that are about to be solved; from a certain number on, the solver is compiled.
+    """Count lines that are about to be solved, and switch to the compiled solver if this pays.
 
     Parameters
     ----------
-    work : computing time for these lines, in units of the time for a typical line; by default the
-        number of lines
+    work : computing time in units of the time for a typical line; the default is the number of
+        lines
     """
     pace = _paces[solver]
     pace.solved += lines
