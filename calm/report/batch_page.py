@@ -193,13 +193,10 @@ def _fit_text(fit: Fit) -> str:
 def write_summary(result: Path, mooring: Design) -> Summary:
     """Write the summary of a finished batch as JSON and HTML files next to the batch file.
 
-    The batch file is not changed, so its summary can be written again at any time.
-
     Parameters
     ----------
-    result : path of the batch file RESULT.nc, next to which RESULT.summary.json and
-        RESULT.summary.html are written
-    mooring : mooring of the batch
+    result : path of the batch file RESULT.nc; the summary is in RESULT.summary.json and
+        RESULT.summary.html
 
     Raises
     ------
@@ -230,11 +227,10 @@ _ALL = (
 
 
 def summary_part(summary: Summary) -> ReportPart:
-    """Build the summary of a batch for a terminal of 80 columns, with long labels wrapped.
+    """Build the summary of a batch for a terminal of 80 columns.
 
-    The summary lists components and clamps with the 99th percentile and the maximum of each
-    quantity. The failure rate of each rule, the worst profile for each response, and the return
-    levels follow.
+    The summary lists, for each component and clamp, the 99th percentile and the maximum of each
+    quantity. Failure rates, worst profiles and return levels follow.
     """
     lost = State.FAIL if summary.count - summary.solved else None
     ended = blocks.Span(batch_summary.status_counts(summary), lost)

@@ -19,13 +19,13 @@ from calm.version import __version__
 
 
 def summary_document(summary: Summary) -> dict[str, Any]:
-    """Return the JSON object of a summary.
+    """Return the JSON object of a batch summary.
 
-    Values are in SI units and degrees, times are in UTC, and shares are fractions of 1; unknown
-    values are null. The main keys are:
+    Values are in SI units and degrees, times in UTC, and rates are fractions of 1. Unknown values
+    are null. The main keys are:
 
     - `profiles`: number of profiles by status
-    - `components`, `clamps`: distributions of the values of each part
+    - `components`, `clamps`: distributions of values
     - `rules`, `limits`: frequency of violations
     - `limits_used`: limits that the rules apply
     - `responses`: exceedance curves and return levels of the line as a whole
@@ -164,7 +164,6 @@ def profiles_table(title: str, profiles: Sequence[tuple[str, WorstProfile]]) -> 
 
     Parameters
     ----------
-    title : title of the table
     profiles : pairs of a text for the first column and a profile; the text is empty, or names the
         response for which the profile is the worst
     """

@@ -21,13 +21,11 @@ class Column:
     Attributes
     ----------
     heading, unit : title, and unit below the title
-    numeric : whether the cells are numbers
-    share : weight of the column when the remaining width of the page is distributed: 0 for short
-        words, 1 for names, more for sentences. A numeric column with a share of 1 gets no
-        additional width
+    share : weight by which the remaining page width is divided among columns of text: 0 for short
+        words, 1 for names, more for sentences
     short : shorter title for narrow tables; it may have several lines
     narrow : whether narrow tables include the column
-    marked : whether cells may carry a mark
+    marked : whether cells may carry a mark for values near or beyond a limit
     """
 
     heading: str
@@ -45,11 +43,10 @@ class Cell:
 
     Attributes
     ----------
-    text, detail : text, and a smaller line below it
+    detail : smaller text below the main text
     state : state of a check, shown by colour and words
     mark : symbol after a value that is close to a limit or beyond it
     indented : whether the cell is indented below the row above
-    strong : whether the text is bold
     goes_on : whether, in print, the detail follows on the same line
     then : suggested action
     bar : value as a fraction of its limit, drawn as a bar with a mark at 1
@@ -78,8 +75,8 @@ class Table:
     ----------
     note : text below the table
     totals : number of rows at the end that are sums
-    sortable : whether the rows can be sorted and filtered
-    dense : whether the spacing of the columns is reduced because there are many
+    sortable : whether readers can sort and filter the rows
+    dense : whether the columns are closely spaced
     by_hand : whether the table is filled in by hand, and has rules and room to write
     aside : text in smaller letters next to the title
     ruled : whether there is a hairline below each row
@@ -179,8 +176,10 @@ class Heading:
 class Listing:
     """Text of a file, to be shown in a report.
 
-    If `name` is set, the text is attached to a PDF as a file of this name. If the text has more
-    than `most` lines, it is not printed in the PDF but only attached.
+    Attributes
+    ----------
+    name : file name of the text as an attachment of a PDF; empty for no attachment
+    most : number of lines above which a PDF attaches the text without printing it
     """
 
     title: str
@@ -214,7 +213,7 @@ class SignOff:
     Attributes
     ----------
     revisions : revision, date, author and reason of each revision
-    roles : role of each signatory, and the name if known
+    roles : role and name of each signatory; empty names are unknown
     note : text next to the boxes
     """
 
@@ -250,7 +249,7 @@ class Beside:
     Attributes
     ----------
     share : fraction of the width for the left group
-    height : exact height of both groups in print [pt]; 0 if their contents determine the height
+    height : height of the groups in print [pt]; 0 to fit their contents
     """
 
     left: tuple[Block, ...]
@@ -290,7 +289,7 @@ class Running:
     ----------
     document, title : left side of the header
     verdict, date : right side of the header
-    foot : left side of the footer, opposite the page number
+    foot : left side of the footer
     """
 
     document: str = ""
@@ -302,10 +301,9 @@ class Running:
 
 @dataclass(frozen=True)
 class Section:
-    """Section of a report, on one mooring or tow, with its name and its parts.
+    """Section of a report, on one mooring or tow.
 
-    A section with its own `running` header starts a new page without a title. Sections may be built
-    in separate processes.
+    A section with its own `running` header starts a new page without a title.
     """
 
     name: str
@@ -320,9 +318,8 @@ class Report:
     Attributes
     ----------
     title, subtitle : titles of the first page
-    front : parts before the sections
+    front : content before the sections
     sections : one section per mooring or tow
-    date : date as text, or None
     plates : full-page drawings at the beginning
     verdict : verdict with its state, in the header of every page
     foot : text in the footer of every page
@@ -354,10 +351,9 @@ def words(heading: str, show: Shown = "", share: float = 1.0, **more: Any) -> Fi
 
     Parameters
     ----------
-    heading : heading of the column
-    show : what a cell shows of an item: the name of an attribute, the index of a member, or a
-        function of the item; by default, the attribute with the name `heading`
-    share : share of the width, as in `Column`
+    show : attribute name, member index, or function that gives the text of an item; by default, the
+        attribute named `heading`
+    share : weight in the division of the page width (see `Column`)
     more : further attributes of `Column`
     """
     return Column(heading, share=share, **more), _getter(show, heading)
@@ -397,9 +393,9 @@ def quantity(name: str | Quantity, show: Shown = "", heading: str | None = None)
     Parameters
     ----------
     name : name of the quantity, or the quantity itself
-    show : value to show of an item [SI, degrees], as in `words`; by default, the attribute with the
-        name of the quantity
-    heading : heading of the column, if it differs from the usual heading of the quantity
+    show : source of the value [SI, degrees], as in `words`; by default, the attribute with the name
+        of the quantity
+    heading : heading of the column, instead of the usual heading of the quantity
     """
     shown = QUANTITIES[name] if isinstance(name, str) else name
     value = _getter(show, shown.name)
@@ -428,8 +424,8 @@ def figure_cell(quantity: Quantity, value: float | None, state: State | None = N
     Parameters
     ----------
     value : value in SI units or degrees; None if unknown
-    state : state of the value, which selects the mark: a warning if the value is close to a limit,
-        or a failure if it is beyond the limit
+    state : state of the value, which selects the mark: a warning is close to a limit, a failure
+        beyond the limit
     """
     return Cell(quantity.format(value), state=state, mark=state.sign if state else "")
 
@@ -449,8 +445,7 @@ def table_of(
     Parameters
     ----------
     items : items to tabulate; a `Cell` among the items is a heading for the following rows
-    fields : fields created by `words`, `number` and `quantity`
-    note : text below the table
+    fields : columns created by `words`, `number` and `quantity`
     sums : items of the total rows at the end of the table
     more : further attributes of `Table`
     """

@@ -1,12 +1,12 @@
 """Chart of cables in a uniform current for one value of K, on an A4 page.
 
-The main curve is graduated in the angle φ and the arc length s′. A cable is the part of this curve
-between its lower end A and its upper end B. Three families of curves show the ratios L/H, D/H and
-T_A/(wH). L is the length of the cable, D the horizontal distance and H the difference in height
-between A and B, T_A the tension at A, and w the weight per metre. Along each curve, which is the
-locus of the points P = (y′ of A, z′ of B), one of the ratios is constant.
+The main curve is graduated in the angle φ and the arc length s′. A cable is the part of the main
+curve between its lower end A and its upper end B. Each point P = (y′ of A, z′ of B) of the chart
+stands for one cable. Each curve of three families connects points with equal L/H, D/H or T_A/(wH).
+L is the length of the cable, D and H the horizontal and vertical distances between A and B. T_A is
+the tension at A, and w the weight per metre.
 
-The module also reports the cables for three given quantities, as a table and as JSON.
+The module also reports the cables for three given quantities.
 """
 
 from __future__ import annotations
@@ -60,10 +60,12 @@ _FAMILIES = (
 
 
 def draw_chart(k: float, lower_end: str = "below-90") -> Figure:
-    """Draw the chart for one value of K (0 to 100) on an A4 page, without overlapping labels.
+    """Draw the chart for one value of K (0 to 100) on an A4 page.
 
-    `lower_end` states whether the angles at the lower ends of the cables are ``below-90`` or
-    ``above-90`` degrees. The figure is not attached to a window.
+    Parameters
+    ----------
+    lower_end : range of the angles at the lower ends of the cables, ``below-90`` or ``above-90``
+        degrees
 
     Raises
     ------
@@ -234,7 +236,7 @@ class Labels:
         Parameters
         ----------
         angle : direction of the curve [rad]
-        size : length of the tick in points; if negative, the tick is drawn to the left
+        size : length of the tick [pt]; negative for a tick to the left
         """
         place, right = self._pixel_and_normal(x, y, angle)
         ends = np.array([place, place + right * size * self._points])

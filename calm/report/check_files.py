@@ -37,11 +37,14 @@ def listed_findings(
     """Yield the findings to list for a mooring, each with a flag that marks governing findings.
 
     Among several findings, the finding with the largest utilisation governs. The list contains:
-    (1) the governing finding of each rule, with the flag true; (2) the governing finding of each
-    rule on each component over all environments, unless it passes with a utilisation below
-    `MUCH_USED`; (3) all failures, unknowns and warnings in each environment. A cluster of
-    equal floats counts as a single component. If `every` is true, all findings of all situations
-    are listed.
+
+    - the governing finding of each rule, with the flag true
+    - the governing finding of each rule on each component, unless it passes with a utilisation
+      below `MUCH_USED`
+    - the failures, unknowns and warnings in each environment
+
+    A cluster of equal floats counts as a single component. If `every` is true, the list contains
+    all findings.
     """
     found = [*assessment.every_finding()]
     leading = {id(one) for one in governing_of_each_rule(found)}
@@ -66,8 +69,8 @@ def _entry_key(finding: Finding) -> Hashable:
 def check_document(assessments: Sequence[Assessment], *, every: bool = False) -> dict[str, Any]:
     """Return the JSON object of a design check; results without a solution are null.
 
-    From `situations` on, the value of each key is an object whose keys are the names of the
-    moorings. The main keys are:
+    From `situations` on, each value is an object with one entry per mooring, by name. The main keys
+    are:
 
     - `verdict`, `state`: conclusion from all findings, and worst state
     - `estimated`: number of findings based on estimates

@@ -53,12 +53,10 @@ def missing_block(
 ) -> str:
     """Create the `components:` section of a mooring file, with the missing keys of each component.
 
-    For each component, comments name the pieces that use it and the place of its definition in the
-    file. For each key, comments give an example, the meaning of the key, the checks that need it,
-    and an estimate if there is one for this class of component. Optional keys follow as comments.
-    If a file already has a section `components:`, the block has no heading and can be pasted into
-    this section. If nothing is missing, or nothing can be checked, the text consists of comments
-    only.
+    Comments explain each component and each key. Optional keys are comments, too. The block has no
+    heading if a file already has a section `components:`; paste the block into that section. The
+    text has only comments if nothing is missing, or if a mooring without equilibrium cannot be
+    checked.
 
     Parameters
     ----------

@@ -48,14 +48,14 @@ def motion_report(
     notes: Sequence[str],
     cards: Sequence[ReadCard] = (),
 ) -> blocks.Report:
-    """Build the report, which begins with one page on the whole deployment.
+    """Build the report of a motion study, beginning with one page on the whole deployment.
 
     Parameters
     ----------
     series : depths of the sensors and of other instruments over time
     time : (n,) times of the record
     notes : notes on the input
-    cards : summary card of each file read
+    cards : summary card of each input file
     """
     bare = [one for one in series if not np.isfinite(one.measured).any()]
     sensors = [one for one in series if np.isfinite(one.measured).any()]
@@ -261,11 +261,11 @@ def _value_text(value: float, decimals: int = 2) -> str:
 def motion_document(
     study: MotionEstimate, name: str, cards: Sequence[ReadCard] = ()
 ) -> dict[str, Any]:
-    """Return the JSON object of a study: factors with 95 % intervals, and depth errors [m].
+    """Return the JSON object of a motion study: factors with 95 % intervals, and depth errors [m].
 
-    The key `sensors` gives, for each sensor in use, the agreement with the estimate and, under the
-    key `plain`, the agreement with the line computed from currents alone. The key `held_out` lists
-    withheld sensors, and the key `read` describes the input files.
+    The key `sensors` gives the agreement of each sensor in use with the estimate. Its key `plain`
+    gives the agreement with the line computed from currents alone. The key `held_out` lists
+    withheld sensors, the key `read` the input files.
     """
     sensors = [
         {"label": label, **_agreement_document(fit), "offset": float(offset)}
@@ -378,7 +378,7 @@ def _draw_depths(
 
 
 def false_figure(time: Any, false: Mapping[str, Any]) -> str:
-    """Draw a row of marks for each current level, at the times when the current appears false.
+    """Draw a row of marks for each current level, at the times of apparently false currents.
 
     Parameters
     ----------

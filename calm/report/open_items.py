@@ -112,18 +112,19 @@ def where_text(finding: Finding) -> str:
 def open_groups(assessment: Assessment) -> list[list[Finding]]:
     """Group the open findings by cause, most severe first.
 
-    Failures, unknowns and warnings share a cause if they differ only in component and values.
-    Estimates share a cause if they concern the same component; such estimates are omitted if a
-    missing value of this component is already listed as an item. Acceptances share a cause if they
-    concern the same component and have the same reason. Findings that are not judged share a cause
-    if they belong to the same rule.
+    Findings share a cause as follows:
+
+    - failures, unknowns and warnings that differ only in component and values
+    - estimates for the same component, unless a missing value of the component is listed
+    - acceptances for the same component with the same reason
+    - findings of the same rule that are not judged
     """
     use = {one.label: one.use for one in assessment.inventory}
     return groups_of(assessment.every_finding(), use)
 
 
 def groups_of(findings: Iterable[Finding], use: Mapping[str, str]) -> list[list[Finding]]:
-    """Group open findings by cause.
+    """Group open findings by cause, as in `open_groups`.
 
     Parameters
     ----------
@@ -299,8 +300,7 @@ def _capitalised(text: str) -> str:
 def draft(assessment: Assessment) -> bool:
     """Return whether a report is a draft, which must not be signed.
 
-    A report is a draft if its number, revision or date is missing, or if it relies on an acceptance
-    copied from an example.
+    A draft lacks a number, revision or date, or relies on an acceptance copied from an example.
     """
     document = assessment.file.document
     given = document is not None and all((document.id, document.revision, document.date))

@@ -103,12 +103,11 @@ def by_speed(
 
 
 def to_document(tabulation: Tabulation) -> dict[str, Any]:
-    """Return the JSON object of a table.
+    """Return the JSON object of a table, with one object per ship speed.
 
-    The keys are `calm`, `name`, `type` and `speeds`, a list with one object per speed. Such an
-    object has the keys `speed` and `status`, and the keys of `FIGURES` (SI and degrees), but
-    `frequency` only if the cable strums. The keys `warnings` or, without an equilibrium, `message`
-    and `advice` follow.
+    Each object has the keys `speed` and `status`, and the keys of `FIGURES` (SI and degrees). The
+    key `frequency` is present only if the cable strums. The key `warnings` follows or, without an
+    equilibrium, `message` and `advice`.
     """
     return {
         "calm": __version__,
@@ -145,8 +144,8 @@ def _row_document(tabulation: Tabulation, row: TabulationRow) -> dict[str, Any]:
 def tabulation_part(tabulation: Tabulation) -> ReportPart:
     """Build the table with one row per speed, within 80 columns.
 
-    A row without an equilibrium shows the status of the solver. A row with warnings that are not
-    common to all rows has a mark; common warnings follow the table.
+    Rows without an equilibrium show the status of the solver. Warnings common to all rows follow
+    the table; rows with other warnings have a mark.
     """
     speed = QUANTITIES["speed"]
     names = [name for name in FIGURES if name != "frequency" or tabulation.strumming]
@@ -197,10 +196,10 @@ _CURVE, _AT_BODY = Stroke(LINE_COLOUR, 1.4), Stroke(LINE_COLOUR, 1.2, (4.0, 2.0)
 
 
 def sweep_drawing(tabulation: Tabulation) -> str:
-    """Draw depth and layback of the towed body, and tensions, against the ship speed, as SVG.
+    """Draw body depth, layback and tensions against ship speed, as SVG.
 
-    The tensions are those at the tow point and at the body. A speed without an equilibrium leaves a
-    gap in the curves.
+    The tensions are at the tow point and at the body. Speeds without an equilibrium leave gaps in
+    the curves.
     """
     page = Graph(_WIDTH, _HEIGHT, tabulation.name, _SIZE)
     title = shortened(tabulation.name, _WIDTH - 12.0, 11.0, bold=True)

@@ -23,16 +23,17 @@ _SMALL = 1e-3
 def verification_document(findings: Findings) -> dict[str, Any]:
     """Return the JSON object of a verification.
 
-    Values that agree by construction are not counted in `checked`. The keys are:
+    The keys are:
 
     - `calm`: version of CALM
-    - `checked`: number of checked values
+    - `checked`: number of values that do not agree by construction
     - `kinds`: number of values of each kind
     - `out`: number of values out of tolerance
     - `cases`: list with one object per value
 
-    The keys of a case are `source`, `name`, `kind`, `expected`, `got`, `difference`, `tolerance`,
-    `unit`, `why` (the reason for the tolerance), `within`, and `reason` if no value was computed.
+    The keys of a verification case are `source`, `name`, `kind`, `expected`, `got`, `difference`,
+    `tolerance`, `unit`, `within`, and `why` (the reason for the tolerance). If no value was
+    computed, `reason` follows.
     """
     cases = [
         _case_document(source, outcome) for source, outcomes in findings for outcome in outcomes
@@ -65,11 +66,10 @@ def verification_part(findings: Findings) -> ReportPart:
 
 
 def figures(outcome: CaseOutcome) -> tuple[str, ...]:
-    """Format the outcome of a case as a row, in the order of `COLUMNS`.
+    """Format the outcome of a verification case as a row, in the order of `COLUMNS`.
 
-    The computed value and the difference have one decimal place more than the tolerance, or two
-    more if the expected value has at least two more. Further digits are rounding errors that differ
-    between machines.
+    The computed value and the difference have one more decimal place than the tolerance, or two if
+    the expected value has at least two more.
     """
     case = outcome.case
     expected = f"{case.expected:.12g}"
