@@ -51,10 +51,13 @@ class DrawnCase:
 
 @dataclass(frozen=True)
 class Label:
-    """A label next to the line, with its part, its text, and the depth as text.
+    """Label of a part, next to the line.
 
-    `at` is the depth of the part and its position to the east and north [m]; None for a cable.
-    `tag` is the mark and the number of the open item on this part.
+    Attributes
+    ----------
+    depth : depth as text
+    at : depth, and position to the east and north [m]; None for a cable
+    tag : mark and number of the open item on the part
     """
 
     part: ShownPart
@@ -78,17 +81,15 @@ def grey(svg: str) -> str:
 def elevation(
     title: str, cases: Sequence[DrawnCase], labels: Sequence[Label], size: tuple[float, float]
 ) -> tuple[str, float]:
-    """Draw the elevation of the mooring as SVG; also return the scale of both axes [m per point].
+    """Draw the elevation of the mooring as SVG; also return the scale of the axes [m per point].
 
-    The first case is a thick solid line, still water is dashed, strumming cables are dotted, and
-    other cases are thin lines. The current of the first case is drawn on the left. The labels and
-    their symbols are on the right, from the top down. If a wide mooring leaves no space for labels,
-    only the positions of the parts are marked.
+    All load cases are in the vertical plane of the first load case, whose current is on the left.
+    If a wide mooring leaves no space for labels, only the positions of the parts are marked.
 
     Parameters
     ----------
-    cases : load cases, all drawn in the vertical plane of the first case
-    labels : labels, from the top down
+    cases : load cases; a thick line shows the first
+    labels : labels to the right of the line, from the top down
     size : width and height of the drawing
     """
     width, height = size
@@ -235,7 +236,7 @@ class PieceBar(NamedTuple):
     ----------
     number : number of the piece in the line
     tension, capacity : maximum tension, and capacity; an unknown capacity is None
-    launch, launch_capacity : maximum tension and capacity during the launch; None if unknown
+    launch, launch_capacity : tension and capacity during the launch; None if unknown
     judged : whether the capacity of the piece is checked
     """
 

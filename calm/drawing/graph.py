@@ -26,13 +26,13 @@ _MARGIN = 0.05  # share of the range, on either side
 
 @dataclass(frozen=True)
 class Scale:
-    """A linear or logarithmic range of values.
+    """A linear or logarithmic range of values along an axis.
 
     Attributes
     ----------
     low : value at the left or the lower edge; may be larger than `high`
     high : value at the right or the upper edge
-    logarithmic : whether the scale is logarithmic; `low` and `high` are then positive
+    logarithmic : if true, `low` and `high` are positive
     """
 
     low: float
@@ -109,9 +109,9 @@ def numbers(low: float, high: float, most: int) -> list[Tick]:
 
 
 def counts(first: int, last: int, most: int) -> list[Tick]:
-    """Return about `most` ticks or fewer at whole numbers from `first` to `last`.
+    """Return ticks at whole numbers from `first` to `last`, in equal steps of a round number.
 
-    The steps between the ticks are equal, round numbers.
+    There are at most about `most` ticks.
     """
     wanted = max((last - first) / max(most, 1), 1.0)
     power = 10 ** floor(log10(wanted))
@@ -187,7 +187,7 @@ class Stroke(NamedTuple):
     """Colour, width [pt] and dashes of a line.
 
     `dashes` are the lengths of dashes and gaps [pt]; empty for a solid line. A `square` line
-    extends beyond both ends by half its width, so that even the shortest line is visible.
+    extends beyond its ends by half its width.
     """
 
     colour: str
@@ -248,7 +248,7 @@ class Graph:
         Parameters
         ----------
         left, top, width, height : position and size of the axes on the graph [pt]
-        across, up : scale from left to right, and scale from bottom to top
+        across, up : horizontal and vertical scale
         clipped : whether lines are clipped at the frame
         """
         return Axes(self, (left, top, width, height), across, up, clipped)
@@ -419,7 +419,7 @@ class Axes:
         ----------
         across, up : ticks, or approximate number of ticks at round numbers
         below, beside : labels of the horizontal and the vertical axis; line feeds separate lines
-        grid : whether thin lines continue the ticks behind the drawing
+        grid : whether thin grid lines continue the ticks
         numbered : whether the horizontal and the vertical axis have numbers
         """
         pen, size = self.graph.pen, self.graph.size
@@ -482,10 +482,10 @@ def _path(x: Floats, y: Floats) -> str:
 
 
 def draw_mark(pen: Pen, x: float, y: float, sign: str, size: float, colour: str) -> None:
-    """Draw a mark of width `size` [pt] at a point.
+    """Draw a mark of a given width [pt] at a point.
 
-    `sign` is the form of the mark. Filled marks are o (circle), s (square), D (diamond), and v and
-    ^ (triangles). Line marks are + (cross) and | (vertical line).
+    `sign` is the form of the mark: o (circle), s (square), D (diamond), v and ^ (triangles), +
+    (cross) or | (vertical line).
     """
     half = size / 2
     if sign == "o":

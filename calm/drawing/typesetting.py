@@ -30,7 +30,7 @@ def typeset(
 
     Parameters
     ----------
-    inputs : texts that the template reads from `sys.inputs`; they are not interpreted as markup
+    inputs : texts in `sys.inputs` of the template, not interpreted as markup
     timestamp : date of a PDF, in seconds since 1970; None for no date
     """
     import typst

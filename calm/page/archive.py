@@ -36,9 +36,8 @@ def packed(python: str) -> bytes:
 
     Parameters
     ----------
-    python : version of Python in the runtime of the page, such as "3.13". If the current process
-        runs the same version, the archive also contains compiled modules, so that the page starts
-        sooner.
+    python : version of Python in the page, such as "3.13"; if the current process has the same
+        version, the archive also contains compiled modules
     """
     compiles = python == f"{sys.version_info[0]}.{sys.version_info[1]}"
     content = io.BytesIO()

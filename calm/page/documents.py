@@ -20,9 +20,9 @@ class Download:
     Attributes
     ----------
     kind : name of the kind in the messages of the page
-    title : title of the button that starts the download
+    title : title of the download button
     suffix : text appended to the name of the mooring file
-    content : function that makes the document from a list of the mooring in each environment
+    content : function that makes the document from the mooring in each environment
     """
 
     kind: str
@@ -75,7 +75,7 @@ def document(kind: str, view: live.View) -> tuple[str, bytes]:
     Parameters
     ----------
     kind : name of a kind in `DOCUMENTS`
-    view : results of the line in the builder; its solutions are reused
+    view : results of the line in the builder
 
     Raises
     ------

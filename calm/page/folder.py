@@ -35,9 +35,9 @@ def write_page(folder: Path, runtime: Path | None = None) -> list[str]:
 
     Parameters
     ----------
-    runtime : folder that contains the releases of Pyodide and xterm.js, possibly in subfolders. The
-        releases are copied to the page. By default, the page loads the releases from the addresses
-        `PYODIDE` and `TERMINAL`.
+    runtime : folder that contains, possibly in subfolders, the releases of Pyodide and xterm.js to
+        copy to the page; by default, the page loads them from the addresses `PYODIDE` and
+        `TERMINAL`
 
     Returns
     -------

@@ -36,7 +36,7 @@ class Offer:
     title : purpose and effect of the change
     label : name of the change in the history
     make : function that applies the change to a draft and returns the new draft. The function may
-        solve the line to find a value, and raises `CalmError` if the change does not help.
+        solve the line, and raises `CalmError` if the change does not help.
     """
 
     title: str
@@ -56,13 +56,12 @@ def single(view: View) -> LegResult | None:
 def offers(view: View, catalogue: Catalogue, catalogs: Sequence[str | Path] = ()) -> list[Offer]:
     """Suggest changes that remove failures and warnings of a line, in order of severity.
 
-    If the line has no anchor or needs a heavier anchor, the line is solved in every environment and
-    situation.
+    Anchor suggestions require a solution in every environment and situation.
 
     Parameters
     ----------
     catalogue : components from which an anchor is chosen
-    catalogs : catalogue files of the user, needed to read the line in its other environments
+    catalogs : catalogue files of the user
     """
     anchors = [*_anchors(view, catalogue, catalogs)] if _needs_new_anchor(view) else []
     grave = sorted((e for e in view.findings if e.state in _GRAVE), key=lambda each: each.rank)
@@ -98,8 +97,7 @@ def sized(mooring: Design, target: str, change: str) -> Offer:
 
     Parameters
     ----------
-    target : condition to meet, in the syntax of `calm size`
-    change : quantity to change, in the syntax of `calm size`
+    target, change : condition to meet, and quantity to change, in the syntax of `calm size`
 
     Raises
     ------

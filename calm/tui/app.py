@@ -37,21 +37,14 @@ _COLOURLESS = NoColor()
 class BuildApp(App[int]):
     """The line builder.
 
-    Keys, pastes and mouse presses are handled one after the other, so that a screen opened by a key
-    is open before the next key is handled. Otherwise, keys that are typed ahead, or that arrive
-    together over a slow connection, would go to the widget that has the focus on their arrival. For
-    example, they would go to the line instead of the field that the first key opens.
-
-    A key counts as handled once all message queues that the key may have filled are empty. To wait
-    for this, the application posts a call to each of these queues in turn. A queue is handled in
-    order, so the call runs only when its widget has handled the key. A second round of calls waits
-    for messages that the widgets sent to each other. Rounds are repeated until all queues are
-    empty.
+    Keys, pastes and mouse presses are handled one after the other. A screen opened by a key is
+    therefore open before the next key is handled, even if keys are typed ahead. A key is handled
+    once all message queues that the key may have filled are empty. To wait for an empty queue, the
+    application posts a call to the queue.
 
     Parameters
     ----------
-    session : editing session of the file
-    kept : unsaved work of an earlier session; at the start, the user is asked whether to recover it
+    kept : unsaved work of an earlier session, which the user may recover at the start
     environ : environment variables that describe the terminal
 
     Attributes

@@ -148,11 +148,10 @@ _TITLES = {
 class CataloguePane(Vertical):
     """Pane with a search field, the components found, and the card of the chosen component.
 
-    The pane requests the length of a new cable or chain, and the position of a new clamp.
+    A new cable or chain needs a length, a new clamp a position; the pane asks the user for them.
 
     Parameters
     ----------
-    workspace : workspace that provides the catalogue
     take : function that receives the purpose of the search, and the keys of the row: `use`,
         `length`, `at` and `label`
     close : function that returns to the line
@@ -218,10 +217,10 @@ class CataloguePane(Vertical):
     def open(
         self, purpose: Purpose, target: str, role: str = "", *, clampable: bool = False
     ) -> None:
-        """Open the search for a component.
+        """Open the search for a component, with favourites first.
 
-        Favourites are listed first. Until the user types words, the favourites are followed by
-        components with the given role, recent components, and components of the line.
+        Until the user types, components with the given role, recent components and components of
+        the line follow.
 
         Parameters
         ----------

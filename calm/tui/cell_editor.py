@@ -67,7 +67,7 @@ class EditableTable(Vertical):
         text : initial text
         check : function that checks the typed text
         least_width : minimum width of the editor [cells]
-        begun : whether the initial text was just typed by the user
+        begun : whether the user has just typed the initial text
         """
         region, editor = self.table.cell_region(), self.editor
         editor.styles.offset = region.offset

@@ -21,9 +21,9 @@ class Reading:
     Attributes
     ----------
     text : text to write, with a missing unit added
-    complaint : reason why the text is invalid; empty if the text is valid
+    complaint : reason why the text is invalid; empty if valid
     offer : corrected text, if known
-    explained : meaning of a valid text, unless the meaning is obvious
+    explained : meaning of a valid text; empty if obvious
     """
 
     text: str
@@ -162,9 +162,13 @@ def distance(before: str = "") -> Check:
 def length(before: str = "", *, towed: bool = False) -> Check:
     """Return a check for the length of a piece.
 
-    The text is a length, a length with the load at which the length was measured
-    (``98 m at 2 kN``), or ``fit`` with the required depth of the top (if `towed`, of the lower
-    end). A bare number gets the unit of the previous text, `before`.
+    A valid text is one of:
+
+    - a length, such as ``98 m``
+    - a length with the load of its measurement, such as ``98 m at 2 kN``
+    - ``fit`` with the required depth of the top, or of the lower end if `towed`
+
+    A bare number gets the unit of the previous text, `before`.
     """
     plain = quantity(POSITIVE_LENGTH, usual_unit=unit_of(before))
     depth = quantity(QuantityField("length") if towed else LENGTH, usual_unit=unit_of(before))

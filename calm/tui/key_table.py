@@ -30,8 +30,7 @@ class Action:
     title : two or three words, for the palette and the key bar
     meaning : a sentence for the help
     hint : rank in the key bar, from 0; None if the key bar does not show the action
-    palette : whether the command palette lists the action; only actions of the line and of the main
-        screen can be listed
+    palette : whether the command palette may list the action
     """
 
     place: str

@@ -112,7 +112,7 @@ class LineTable(TableCells, can_focus=True):
         return (self.spot,) if self.spot else ()
 
     def show_rows(self, rows: Sequence[TableRow], *, old: bool = False) -> None:
-        """Replace the rows; values of an earlier draft (`old`) are dimmed."""
+        """Replace the rows; dim values that were computed from an earlier draft (`old`)."""
         self.old = old
         self._arranged = (-1, self._arranged[1])
         self.marked &= {row.spot for row in rows}
@@ -226,9 +226,8 @@ def layout_for(
     Parameters
     ----------
     width : width of the table [cells]
-    component, label : width of the longest text in the column [cells]; the two columns share the
-        width that the other columns leave
-    length : width of the longest text in the length column [cells]
+    component, label, length : width of the longest text in the column [cells]; component and label
+        share the width that other columns leave
     leg : width of the longest name of a leg in a net [cells]; 0 for a single line
     planned : whether any row has a planned depth
     """

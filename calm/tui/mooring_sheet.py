@@ -62,7 +62,7 @@ def sheet_of(name: str, draft: Draft, part: Piece | Clamp | None) -> Sheet:
 
     Parameters
     ----------
-    name : name of a sheet in `SHEETS`, or of a section from `settings`
+    name : sheet in `SHEETS`, or section from `settings`
     part : piece or clamp of the row under the cursor
     """
     fields = MooringKeys.model_fields
@@ -166,7 +166,7 @@ def serial_of_equipment(text: str) -> Reading:
 
 
 def entry_text(draft: Draft, rows: Location, called: tuple[str, str], key: str) -> str:
-    """Return the text of a key in a list entry of the file, or "" if there is no such entry.
+    """Return the text of a key in an entry of a list in the file, or "" without an entry.
 
     Parameters
     ----------
@@ -243,10 +243,9 @@ class Missing:
     ----------
     use, kind : id and kind of the component
     labels : labels of the pieces and clamps concerned, as keys of a dict
-    targets : locations in the file to which each missing value is written, by key. If the file
-        defines the component, the location is this definition. Otherwise the locations are all rows
-        that lack the value; for a part of an assembly, this is the row of the assembly. Rows that
-        cannot hold the value are omitted.
+    targets : for each key, locations in the file to which the value is written: the definition if
+        the file has one, otherwise all rows that lack the value. For a part of an assembly, the
+        location is the row of the assembly.
     estimates : estimates for the class of component, by key, as texts without their source
     """
 
@@ -313,7 +312,7 @@ def with_figures(
     Parameters
     ----------
     missing : missing values, with their locations in the file
-    texts : entered texts by ``component.key``; an empty text leaves a value unknown
+    texts : entered texts by ``component.key``; empty for a value that stays unknown
     source : source of all values; may be empty
 
     Raises

@@ -79,7 +79,7 @@ def followed(before: Draft, after: Draft, moved: Mapping[Place, Place]) -> tuple
 
     Parameters
     ----------
-    before, after : the file before and after the edit
+    before, after : file before and after the edit
     moved : new positions of the remaining rows, by old position
     """
     names = list(named_in(after))
@@ -145,7 +145,6 @@ class EnvironmentChoice:
 
     Parameters
     ----------
-    history : history of the file
     environment : name of an environment, or an environment file; None for the default
     """
 

@@ -1,7 +1,7 @@
 """Terminal driver that sends only changed cells, at the pace of the terminal.
 
-Textual sends a whole region again if one of its cells may have changed, and the whole screen after
-a change of size, which is 38 kB for 140 columns and 45 rows.
+Textual itself sends whole regions, or after a change of size the whole screen (38 kB for 140 by 45
+cells).
 """
 
 from __future__ import annotations
@@ -137,9 +137,8 @@ class Painted:
 class Pace:
     """Flow control that delays each frame until the terminal has displayed the previous frame.
 
-    After each frame, the cursor position is requested; the answer shows that the frame is
-    displayed. Over a slow connection, several frames thus merge into one. If the terminal has never
-    answered, frames do not wait.
+    Each frame ends with a request for the cursor position, which the terminal answers once the
+    frame is displayed. Frames do not wait for a terminal that has never answered.
     """
 
     def __init__(self) -> None:

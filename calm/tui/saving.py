@@ -34,7 +34,6 @@ class Saving:
     Parameters
     ----------
     app : application on whose screen questions appear
-    workspace : workspace whose file is saved
     show_replaced_draft : function that shows a text that has replaced the draft, with a message
     leave : function that ends the application
     """

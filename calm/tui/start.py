@@ -85,7 +85,7 @@ def build(path: Path | None, environment: str | None = None, catalogs: Sequence[
     InputError, UsageError
         The file cannot be opened.
     NotWritten
-        Unsaved work could not be kept at the end of the session.
+        Unsaved work could not be kept on exit.
     """
     from calm.tui.app import BuildApp
 
@@ -104,8 +104,7 @@ def build(path: Path | None, environment: str | None = None, catalogs: Sequence[
 def end(app: BuildApp, number: int, _frame: object) -> None:
     """Keep unsaved work and quit, after a signal that ends the terminal or the process.
 
-    The function does not wait for the event loop, which may wait forever for a closed terminal. A
-    closed terminal need not be restored, so the process then ends at once.
+    If the terminal is closed, the process ends without waiting for the event loop, which may hang.
     """
     try:
         app.take_typed()

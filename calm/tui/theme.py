@@ -75,9 +75,8 @@ PICTURE_LIGHT = _palette(
 def choose_theme(environ: Mapping[str, str]) -> str:
     """Choose the theme for a terminal, and return its name.
 
-    A terminal with 256 colours or more gets the colours of the builder. Any other terminal keeps
-    its own sixteen colours, which the user has chosen to be legible. The background counts as light
-    if the last field of `COLORFGBG`, which many terminals set, is a light colour.
+    A terminal with fewer than 256 colours keeps its own sixteen colours. The background counts as
+    light if the last field of the variable `COLORFGBG` is a light colour.
     """
     announced = (environ.get("COLORTERM"), environ.get("TEXTUAL_COLOR_SYSTEM"))
     many = "256" in environ.get("TERM", "") or not _MANY.isdisjoint(announced)
@@ -104,7 +103,8 @@ class Legible(LineFilter):
     Parameters
     ----------
     dark : whether the background of the terminal is dark
-    sixteen : whether the terminal's own colours are used, so that the exact background is unknown
+    sixteen : whether the terminal uses its own sixteen colours, so that the background colour is
+        unknown
     """
 
     def __init__(self, *, dark: bool, sixteen: bool) -> None:

@@ -30,7 +30,7 @@ class VerdictPane(scrolled.ScrolledText, can_focus=True):
 
     Parameters
     ----------
-    go_to : function called with the rows and the text of a chosen line, or with () to go back
+    go_to : function called with the rows and text of a chosen line, or with () to go back
     """
 
     BINDINGS = key_table.bindings("verdict")

@@ -55,7 +55,6 @@ class WaterForm:
 
     Parameters
     ----------
-    draft : draft of the file
     variant : name of an environment, merged with the default environment; None for the default
 
     Raises
@@ -114,8 +113,8 @@ class WaterForm:
     def table(self, *keys: str) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
         """Return the columns and the rows of a table as texts; missing cells are empty.
 
-        Columns and rows are empty if there is no table. They are also empty if a row is longer than
-        the columns or contains anything but texts; only the text editor can show such a table.
+        Columns and rows are empty without a table, or if a row is longer than the columns or has
+        nested values.
         """
         table = self.value(*keys)
         columns = table.get("columns") if isinstance(table, dict) else None
@@ -220,8 +219,8 @@ _ACCEPT_HINT = "Enter accepts"
 class FormChoice(Cycle):
     """Selector of the form in which a water property is given.
 
-    The arrows show other forms, and Enter accepts the form shown. If the focus leaves without
-    Enter, the form in the draft is shown again.
+    The arrows show other forms, and Enter accepts the form shown. Leaving without Enter restores
+    the form in the draft.
     """
 
     BINDINGS = key_table.bindings("given")

@@ -1,7 +1,6 @@
 """Initial tables of the water form: typical currents, currents from files, and pasted rows.
 
-Rows copied from a spreadsheet, a CSV file or a web page are interpreted like files, by headings,
-units and sense of directions.
+Headings, units and directions of pasted rows are interpreted as in files.
 """
 
 from __future__ import annotations
@@ -84,9 +83,9 @@ def imported(path: Path, time: str, depth: float) -> tuple[Sequence[str], Sequen
     Returns
     -------
     columns : depth [m], and either speed [m/s] and direction [degrees] or eastward and northward
-        velocity [m/s], whichever needs fewer digits (usually as in the file). If the current has
-        an upward velocity, all three components of the velocity follow the depth.
-    rows : one row for each level, from the top; the values keep all digits of the file
+        velocity [m/s], whichever needs fewer digits. With an upward velocity, all three velocities
+        follow the depth.
+    rows : one row for each level, from the top, with all digits of the file
 
     Raises
     ------
@@ -166,7 +165,7 @@ def offered_headings(headings: Sequence[str] | None, columns: Sequence[str]) -> 
 def rows_in(columns: Sequence[str], headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Rows:
     """Convert copied rows to the columns of a table.
 
-    If the copied rows have the same columns as the table, the texts are kept.
+    Texts are kept if the copied rows have the same columns as the table.
 
     Raises
     ------

@@ -57,13 +57,11 @@ def mistakes(problems: Sequence[Problem], path: Path) -> str:
 
 
 class Workspace:
-    """State that all screens share.
+    """Data shared by all screens.
 
     Parameters
     ----------
-    session : editing session of the file
-    tell : function that shows a message in the last line of the screen until the next key; its
-        argument `wrong` marks an error
+    tell : function that shows a message until the next key; its argument `wrong` marks an error
     edited : function that checks the draft and keeps a backup copy; called after each change
 
     Attributes
@@ -157,7 +155,6 @@ class Judging:
     Parameters
     ----------
     app : application that runs the workers
-    workspace : workspace that provides the draft and receives the views
     show : function that updates the screens; its argument `is_first` marks the first view
     """
 

@@ -24,11 +24,10 @@ stretched lengths.
 def parts_of_deck(
     deck: Deck, listed: Sequence[DeckItem], *, surface: bool
 ) -> tuple[ShownPart, ...]:
-    """Convert the listed items of a line or leg to parts with values.
+    """Convert the listed items of a line or leg of a net to parts with values.
 
-    The values of each part are its number, cut length or position on the wire, stretched length,
-    depth, planned depth (if any part has one), height, tension and net buoyancy. `surface` is true
-    if the top of the line floats at the surface.
+    Planned depths are among the values if any part has one. `surface` is true if the top of the
+    line floats at the surface.
     """
     weights = {one.label: one.wet_weight for one in deck.assessment.inventory}
     cells = partial(_values, deck.numbers, weights=weights, planned=has_plans(deck))
@@ -43,10 +42,9 @@ def parts_of(
     *,
     surface: bool,
 ) -> tuple[ShownPart, ...]:
-    """Convert the listed items of a line or leg to parts, from the top down.
+    """Convert the listed items of a line or leg of a net to parts, from the top down.
 
-    Consecutive connectors form one junction, unless they are listed separately. A part has the
-    labels of all items that it represents.
+    Consecutive connectors form one junction, unless they are listed separately.
 
     Parameters
     ----------

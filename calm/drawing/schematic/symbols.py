@@ -86,7 +86,7 @@ def sign_of(use: str, label: str, component: Component) -> Sign:
 
     Parameters
     ----------
-    use, label : component id and label of the part; words in the label are considered last
+    use, label : component id and label of the part; the label is considered last
     component : component of the part; its kind, role, name and note are considered first
     """
     own = f"{use} {component.name or ''} {component.note or ''}".lower()
