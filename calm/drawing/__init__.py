@@ -1,5 +1,4 @@
 """Drawings of a line (side view, plan and schematic), and graphs.
 
-Side views and plans are described in metres, independently of the output format. A module for each
-output format draws them.
+Side views and plans are described in metres. A module for each output format draws them.
 """

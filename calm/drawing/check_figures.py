@@ -83,14 +83,8 @@ def elevation(
 ) -> tuple[str, float]:
     """Draw the elevation of the mooring as SVG; also return the scale of the axes [m per point].
 
-    All load cases are in the vertical plane of the first load case, whose current is on the left.
-    If a wide mooring leaves no space for labels, only the positions of the parts are marked.
-
-    Parameters
-    ----------
-    cases : load cases; a thick line shows the first
-    labels : labels to the right of the line, from the top down
-    size : width and height of the drawing
+    The load cases are in the vertical plane of the first load case, which is a thick line. Labels,
+    from the top down, are on the right. A wide mooring without space for labels has only marks.
     """
     width, height = size
     page = picture(width, height, title)
@@ -235,8 +229,8 @@ class PieceBar(NamedTuple):
     Attributes
     ----------
     number : number of the piece in the line
-    tension, capacity : maximum tension, and capacity; an unknown capacity is None
-    launch, launch_capacity : tension and capacity during the launch; None if unknown
+    tension, capacity : maximum tension, and capacity if known
+    launch, launch_capacity : tension and capacity during the launch, if known
     judged : whether the capacity of the piece is checked
     """
 

@@ -28,11 +28,8 @@ _MARGIN = 0.05  # share of the range, on either side
 class Scale:
     """A linear or logarithmic range of values along an axis.
 
-    Attributes
-    ----------
-    low : value at the left or the lower edge; may be larger than `high`
-    high : value at the right or the upper edge
-    logarithmic : if true, `low` and `high` are positive
+    `low` is the value at the left or lower edge, and may be larger than `high`. On a logarithmic
+    scale, `low` and `high` are positive.
     """
 
     low: float
@@ -109,10 +106,7 @@ def numbers(low: float, high: float, most: int) -> list[Tick]:
 
 
 def counts(first: int, last: int, most: int) -> list[Tick]:
-    """Return ticks at whole numbers from `first` to `last`, in equal steps of a round number.
-
-    There are at most about `most` ticks.
-    """
+    """Return ticks at whole numbers from `first` to `last`, in at most `most` equal round steps."""
     wanted = max((last - first) / max(most, 1), 1.0)
     power = 10 ** floor(log10(wanted))
     step = next(int(each) * power for each in _STEPS if each * power >= wanted)
@@ -128,7 +122,10 @@ def decades(low: float, high: float) -> list[Tick]:
 
 
 def moments(begin: np.datetime64, end: np.datetime64, most: int) -> list[Tick]:
-    """Return about `most` ticks or fewer at round times, with values in seconds since 1970."""
+    """Return ticks at round times, with values in seconds since 1970.
+
+    `most` is the approximate maximum number of ticks.
+    """
     edges = np.array([begin, end])
     first, last = seconds(edges)
     wanted = (last - first) / max(most, 1)
@@ -243,13 +240,10 @@ class Graph:
         *,
         clipped: bool = False,
     ) -> Axes:
-        """Add axes to the graph.
+        """Add axes to the graph, with position and size in points.
 
-        Parameters
-        ----------
-        left, top, width, height : position and size of the axes on the graph [pt]
-        across, up : horizontal and vertical scale
-        clipped : whether lines are clipped at the frame
+        `across` and `up` are the horizontal and the vertical scale. If `clipped` is true, lines end
+        at the frame.
         """
         return Axes(self, (left, top, width, height), across, up, clipped)
 
@@ -418,7 +412,7 @@ class Axes:
         Parameters
         ----------
         across, up : ticks, or approximate number of ticks at round numbers
-        below, beside : labels of the horizontal and the vertical axis; line feeds separate lines
+        below, beside : axis labels, which may have several lines
         grid : whether thin grid lines continue the ticks
         numbered : whether the horizontal and the vertical axis have numbers
         """

@@ -50,8 +50,7 @@ class Polyline:
 class PictureMark:
     """A marked point of the line: component id, name, role and depth [m] of a part.
 
-    `x` and `y` are coordinates in the picture [m], but distances to the east and north [m] in the
-    marks from `named_parts`.
+    `x` and `y` are picture coordinates [m]; in `named_parts`, distances east and north [m].
     """
 
     use: str
@@ -68,14 +67,14 @@ class LinePicture:
 
     Attributes
     ----------
-    lines : lines in drawing order, from back to front
+    lines : lines, from back to front
     marks : floats, instruments, releases and the anchor
     across, up : labels of the axes, with units
     ship : position of the towing ship
-    top, bottom : depths at the upper and lower edge of a side view [m]
+    top, bottom : depths at the edges of a side view [m]
     height : water depth of a mooring, or height of a towed line [m]
     surface : whether there is a sea surface at depth 0
-    seabed : depth of the seabed [m]; None if the picture has no seabed
+    seabed : depth of the seabed [m]; None if not shown
     """
 
     lines: tuple[Polyline, ...]
@@ -102,10 +101,7 @@ def elevation_of(
 ) -> LinePicture:
     """Return the side view of a line, in the vertical plane of its excursion or of the tow.
 
-    Parameters
-    ----------
-    overlays : shapes in other environments, or of other designs
-    uncertain : uncertainty of a mooring, shown as a band from 5 to 95 %
+    `overlays` are other shapes to compare. `uncertain` is shown as a band from 5 to 95 %.
     """
     plane, depth = plane_of(result), QUANTITIES["depth"].label
     marks = tuple(
@@ -157,10 +153,7 @@ def from_the_side(
 ) -> Polyline:
     """Project the shape of a line onto a vertical plane, as distances in the plane and depths.
 
-    Parameters
-    ----------
-    plane : (2,) direction of the plane, east and north
-    label : text for the line in a legend
+    `plane` is the (2,) direction of the plane, east and north.
     """
     return Polyline(kind, along(shape.x, shape.y, plane), shape.depth, label)
 
@@ -194,11 +187,9 @@ def _uncertainty_band(uncertain: Uncertain) -> Polyline:
 def plane_of(result: AnyResult) -> Floats:
     """Return the horizontal direction (east, north) of the side view.
 
-    The direction of the side view is:
-
-    - for a mooring: from the anchor to the free end; east if upright
-    - for a net: along its largest extent
-    - for a tow: backward from the ship
+    - Mooring: from the anchor to the free end, or east if upright
+    - Net: along the largest extent
+    - Tow: backward from the ship
     """
     return plane_of_legs(result.legs)
 
@@ -261,12 +252,8 @@ def current_between(
 ) -> tuple[Floats, Floats, Floats]:
     """Return depths, and the current to the east and north at these depths [m/s].
 
-    The depths include all levels of the current profile in the range.
-
-    Parameters
-    ----------
-    top, bottom : range of depths [m]
-    samples : minimum number of evenly spaced depths
+    The depths are at least `samples` depths from `top` to `bottom` [m], and all levels of the
+    current profile between.
     """
     depth = np.union1d(np.linspace(top, bottom, samples), water.level)
     depth = depth[(depth >= top) & (depth <= bottom)]

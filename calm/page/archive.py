@@ -34,10 +34,8 @@ _TIME_STAMP = (1980, 1, 1, 0, 0, 0)
 def packed(python: str) -> bytes:
     """Create the ZIP archive and return its content. The same files always give the same bytes.
 
-    Parameters
-    ----------
-    python : version of Python in the page, such as "3.13"; if the current process has the same
-        version, the archive also contains compiled modules
+    If the page has the Python version of this process, such as "3.13", the archive also contains
+    compiled modules.
     """
     compiles = python == f"{sys.version_info[0]}.{sys.version_info[1]}"
     content = io.BytesIO()

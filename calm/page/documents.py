@@ -72,17 +72,8 @@ DOCUMENTS = (
 def document(kind: str, view: live.View) -> tuple[str, bytes]:
     """Create a document for a solved line, and return its name and content.
 
-    Parameters
-    ----------
-    kind : name of a kind in `DOCUMENTS`
-    view : results of the line in the builder
-
-    Raises
-    ------
-    UsageError
-        The line is not solved, or the document is not available for a tow.
-    NoEquilibrium
-        The line has no equilibrium.
+    `kind` is in `DOCUMENTS`. Raise UsageError if the line is not solved, or the document is not
+    available for a tow. Raise NoEquilibrium if the line has none.
     """
     wanted = next(each for each in DOCUMENTS if each.kind == kind)
     name = f"{view.path.stem}{wanted.suffix}"

@@ -110,7 +110,7 @@ class PageDriver(Driver):
         ----------
         kind : `down`, `up`, `move`, `scroll up` or `scroll down`
         x, y : column and row, counted from 0
-        button : number of the mouse button, from 1; 0 if no button is pressed
+        button : number of the mouse button, from 1; 0 for none
         held : whether `shift`, `alt` and `ctrl` are pressed
         """
         change = x - self._mouse_at[0], y - self._mouse_at[1]

@@ -186,11 +186,8 @@ def _distance(distance: float) -> str:
 def offset_from_target(plan: DropPlan, place: tuple[float, float]) -> str:
     """Format the position of a point relative to the target, north and east.
 
-    Latitude and longitude follow if the position of the target is known.
-
-    Parameters
-    ----------
-    place : distances of the point east and north of the target [m]
+    Latitude and longitude follow if known. `place` is the distances east and north of the target
+    [m].
     """
     east, north = place
     position = plan.position(place)
@@ -347,9 +344,8 @@ _PANEL = 290.0
 def located_figure(located: Located) -> str:
     """Draw an acoustic survey of the anchor as SVG, with a circle for each range.
 
-    The circles are at the depth of the transponder. The left panel shows the whole survey, the
-    right panel the anchor position with its 95 % ellipse. Circles of rejected ranges are grey and
-    dashed.
+    The circles are at the depth of the transponder; rejected ranges are dashed. The right panel
+    shows the anchor position with its 95 % ellipse.
     """
     frame, survey = located.survey.frame, located.survey
     ships = frame.place(

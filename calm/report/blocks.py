@@ -21,8 +21,8 @@ class Column:
     Attributes
     ----------
     heading, unit : title, and unit below the title
-    share : weight by which the remaining page width is divided among columns of text: 0 for short
-        words, 1 for names, more for sentences
+    share : weight in the division of the page width: 0 for short words, 1 for names, more for
+        sentences
     short : shorter title for narrow tables; it may have several lines
     narrow : whether narrow tables include the column
     marked : whether cells may carry a mark for values near or beyond a limit
@@ -46,10 +46,9 @@ class Cell:
     detail : smaller text below the main text
     state : state of a check, shown by colour and words
     mark : symbol after a value that is close to a limit or beyond it
-    indented : whether the cell is indented below the row above
     goes_on : whether, in print, the detail follows on the same line
     then : suggested action
-    bar : value as a fraction of its limit, drawn as a bar with a mark at 1
+    bar : value as a fraction of its limit, drawn as a bar
     picture : SVG drawing
     tone : highlight in a matrix: `fail`, `over` or `near`
     """
@@ -77,9 +76,9 @@ class Table:
     totals : number of rows at the end that are sums
     sortable : whether readers can sort and filter the rows
     dense : whether the columns are closely spaced
-    by_hand : whether the table is filled in by hand, and has rules and room to write
-    aside : text in smaller letters next to the title
-    ruled : whether there is a hairline below each row
+    by_hand : whether the table is filled in by hand
+    aside : smaller text next to the title
+    ruled : whether there is a line below each row
     """
 
     title: str
@@ -176,10 +175,8 @@ class Heading:
 class Listing:
     """Text of a file, to be shown in a report.
 
-    Attributes
-    ----------
-    name : file name of the text as an attachment of a PDF; empty for no attachment
-    most : number of lines above which a PDF attaches the text without printing it
+    A PDF attaches the text as a file called `name`, unless `name` is empty. A text of more than
+    `most` lines is only attached, not printed.
     """
 
     title: str
@@ -210,11 +207,8 @@ class TitleBlock:
 class SignOff:
     """Table of revisions, and boxes for signatures, at the foot of a page.
 
-    Attributes
-    ----------
-    revisions : revision, date, author and reason of each revision
-    roles : role and name of each signatory; empty names are unknown
-    note : text next to the boxes
+    `revisions` have revision, date, author and reason; `roles` have role and name. `note` is next
+    to the boxes.
     """
 
     revisions: tuple[tuple[str, str, str, str], ...]
@@ -246,10 +240,8 @@ class OpenItems:
 class Beside:
     """Two groups of blocks, side by side in print.
 
-    Attributes
-    ----------
-    share : fraction of the width for the left group
-    height : height of the groups in print [pt]; 0 to fit their contents
+    `share` is the fraction of the width for the left group. `height` is in points; 0 fits the
+    contents.
     """
 
     left: tuple[Block, ...]
@@ -317,14 +309,12 @@ class Report:
 
     Attributes
     ----------
-    title, subtitle : titles of the first page
     front : content before the sections
     sections : one section per mooring or tow
     plates : full-page drawings at the beginning
-    verdict : verdict with its state, in the header of every page
-    foot : text in the footer of every page
-    running : header and footer that replace title, verdict, date and foot if the first page has its
-        own title block
+    verdict, foot : texts in the header and the footer of every page
+    running : header and footer of a report whose first page has its own title block; replaces
+        title, verdict, date and foot
     """
 
     title: str
@@ -353,8 +343,7 @@ def words(heading: str, show: Shown = "", share: float = 1.0, **more: Any) -> Fi
     ----------
     show : attribute name, member index, or function that gives the text of an item; by default, the
         attribute named `heading`
-    share : weight in the division of the page width (see `Column`)
-    more : further attributes of `Column`
+    share, more : attributes of `Column`
     """
     return Column(heading, share=share, **more), _getter(show, heading)
 
@@ -392,7 +381,6 @@ def quantity(name: str | Quantity, show: Shown = "", heading: str | None = None)
 
     Parameters
     ----------
-    name : name of the quantity, or the quantity itself
     show : source of the value [SI, degrees], as in `words`; by default, the attribute with the name
         of the quantity
     heading : heading of the column, instead of the usual heading of the quantity
@@ -421,11 +409,8 @@ def quantity_column(quantity: Quantity, heading: str | None = None) -> Column:
 def figure_cell(quantity: Quantity, value: float | None, state: State | None = None) -> Cell:
     """Format a value for a `quantity_column`.
 
-    Parameters
-    ----------
-    value : value in SI units or degrees; None if unknown
-    state : state of the value, which selects the mark: a warning is close to a limit, a failure
-        beyond the limit
+    `value` is in SI units or degrees; None if unknown. A warning marks a value close to a limit, a
+    failure a value beyond the limit.
     """
     return Cell(quantity.format(value), state=state, mark=state.sign if state else "")
 
@@ -447,7 +432,6 @@ def table_of(
     items : items to tabulate; a `Cell` among the items is a heading for the following rows
     fields : columns created by `words`, `number` and `quantity`
     sums : items of the total rows at the end of the table
-    more : further attributes of `Table`
     """
     totals = list(sums)
     rows = (

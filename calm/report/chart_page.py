@@ -1,10 +1,9 @@
 """Chart of cables in a uniform current for one value of K, on an A4 page.
 
 The main curve is graduated in the angle φ and the arc length s′. A cable is the part of the main
-curve between its lower end A and its upper end B. Each point P = (y′ of A, z′ of B) of the chart
-stands for one cable. Each curve of three families connects points with equal L/H, D/H or T_A/(wH).
-L is the length of the cable, D and H the horizontal and vertical distances between A and B. T_A is
-the tension at A, and w the weight per metre.
+curve from its lower end A to its upper end B. Each point P = (y′ of A, z′ of B) stands for one
+cable. Families of curves connect points with equal L/H, D/H or T_A/(wH): length L, horizontal
+distance D, height difference H, tension T_A at A, and weight w per metre.
 
 The module also reports the cables for three given quantities.
 """
@@ -62,16 +61,8 @@ _FAMILIES = (
 def draw_chart(k: float, lower_end: str = "below-90") -> Figure:
     """Draw the chart for one value of K (0 to 100) on an A4 page.
 
-    Parameters
-    ----------
-    lower_end : range of the angles at the lower ends of the cables, ``below-90`` or ``above-90``
-        degrees
-
-    Raises
-    ------
-    UsageError
-        K is out of range, or K is 0 and `lower_end` is ``above-90``: for K = 0, the curve ends at
-        90°.
+    `lower_end` is ``below-90`` or ``above-90``, for angles [degrees] at the lower ends of the
+    cables. Raise UsageError if K is out of range, or if K is 0 and angles are above 90°.
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
@@ -233,10 +224,8 @@ class Labels:
     def tick(self, x: float, y: float, angle: float, size: float, colour: str) -> None:
         """Draw a tick at a point of a curve, to the right when facing along the curve.
 
-        Parameters
-        ----------
-        angle : direction of the curve [rad]
-        size : length of the tick [pt]; negative for a tick to the left
+        `angle` is the direction of the curve [rad]. A negative `size` [pt] draws the tick to the
+        left.
         """
         place, right = self._pixel_and_normal(x, y, angle)
         ends = np.array([place, place + right * size * self._points])

@@ -61,11 +61,10 @@ class SummaryRow:
 
     Attributes
     ----------
-    depth : water depth as text
     cells : cells by name of the environment, in the order of the columns
     handling : cell for launch, recovery and breaks
     governs : check with the largest utilisation in the first environment
-    accepted, findings : number of accepted findings, and number of all findings
+    accepted, findings : numbers of accepted findings and of all findings
     conclusion : verdict
     """
 
@@ -177,8 +176,7 @@ def summary_page(rows: Sequence[SummaryRow]) -> Iterator[Block]:
 def environments_of(rows: Sequence[SummaryRow]) -> tuple[list[str], list[str], dict[str, str]]:
     """Return all environments, the environments with a column in the matrix, and their codes.
 
-    If there are too many environments, only the most severe have a column. Codes are E1, E2 and so
-    on, by name of the environment.
+    If there are many, only the most severe have a column. Codes are E1, E2 and so on.
     """
     names = list(dict.fromkeys(name for row in rows for name in row.cells))
     codes = {name: f"E{at}" for at, name in enumerate(names, 1)}

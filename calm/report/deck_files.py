@@ -156,7 +156,7 @@ def _sheet(columns: str, items: Iterable[Any]) -> tuple[Sequence[str], Rows]:
 def deck_report(deck: Deck, page_size: PageSize, notes: tuple[str, ...] = ()) -> Report:
     """Build the printed deck documents of a mooring: diagram, logs, lists and drop plan.
 
-    The recovery log begins a new sheet. `notes` are added to the warnings on the first sheet.
+    `notes` are added to the warnings on the first sheet.
     """
     parts: list[ReportPart] = [*provenance.document_part(deck.file)]
     if warnings := warned((*deck.notes, *notes)):

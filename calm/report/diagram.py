@@ -67,8 +67,8 @@ class PageSize(StrEnum):
 class _PageColumn:
     """A column of the diagram, with the parts of one leg of a net or of a single line.
 
-    `above` and `below` are the texts at the connections to other columns, or None if the line ends
-    in the water or on the seabed.
+    `above` and `below` are the texts at the connections to other columns; None if there is no
+    connection.
     """
 
     parts: tuple[PlacedPart, ...]
@@ -232,8 +232,8 @@ class _Diagram:
 def diagram_pages(deck: Deck, page_size: PageSize) -> list[str]:
     """Draw the pages of the diagram as SVG pictures at print size; no text is smaller than 8 pt.
 
-    If possible, a page ends above a junction. Where a page interrupts a line, both ends carry the
-    same letter. The same deck gives the same SVG.
+    Where a page interrupts a line, preferably above a junction, both ends carry the same letter.
+    The same deck gives the same SVG.
     """
     diagram = _Diagram(deck, page_size)
     pages = [picture(*page_size.size, diagram.title) for _ in range(diagram.count)]

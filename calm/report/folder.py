@@ -29,8 +29,8 @@ REPORT_FILES = ("report.html", "report.pdf", "report.json", "checks.csv", "inven
 def check_folder(folder: Path) -> None:
     """Raise UsageError if files cannot be written to a folder; call this before any computation.
 
-    The folder may be missing, but its nearest existing parent must be a writable folder. A new
-    folder must not have the suffix of a file.
+    The folder, or the nearest existing parent of a new folder, must be writable. The name of a new
+    folder must not have a file suffix.
     """
     try:
         with contextlib.suppress(FileNotFoundError):
@@ -107,7 +107,7 @@ def _restore_previous(folder: Path, parts: Mapping[str, Path], kept: Mapping[str
 def check_destination(path: Path) -> None:
     """Raise UsageError if a file cannot be written; call this before any computation.
 
-    The path must not be a folder. Its folder must exist, and the file, or the folder of a new file,
+    The path must not be a folder, and its folder must exist. The file, or the folder of a new file,
     must be writable.
     """
     folder = os.path.dirname(os.path.realpath(path))
@@ -123,7 +123,7 @@ def write_file(path: Path, content: bytes) -> None:
     """Write a file atomically, so that readers see either the old content or the new.
 
     Devices and pipes are written directly; symbolic links are preserved. Raise UsageError if the
-    system rejects the file, which then keeps its old content.
+    system rejects the file.
     """
     try:
         if os.path.exists(path) and not os.path.isfile(path):
@@ -135,15 +135,10 @@ def write_file(path: Path, content: bytes) -> None:
 
 
 def printed(report: Report, page_size: str = "a4", leaves: Sequence[str] | None = None) -> bytes:
-    """Typeset a report as PDF.
+    """Typeset a report as PDF, of size a4, a3 (landscape) or letter.
 
     Equal reports give equal bytes; the only date comes from SOURCE_DATE_EPOCH. Characters that are
-    not in the fonts appear as �.
-
-    Parameters
-    ----------
-    page_size : a4, a3 (landscape) or letter
-    leaves : sections already converted by `pdf_leaf`
+    not in the fonts appear as �. `leaves` are sections already converted by `pdf_leaf`.
     """
     leaves = leaves or [pdf_leaf(section) for section in report.sections]
     when = moment()

@@ -52,7 +52,7 @@ class LoadCase:
     Attributes
     ----------
     code : code of the load case in findings, such as 1s
-    results : result for each leg of a net, or for the single line; empty if there is no equilibrium
+    results : one result, or a result for each leg of a net; empty if there is no equilibrium
     failure : reason why there is no equilibrium; None if there is one
     """
 
@@ -195,9 +195,8 @@ class PieceEnvelope:
     row : results for the piece in the first load case
     tension, case : maximum tension [N], and the code of its load case
     least, tilt : minimum tension [N] and maximum tilt [degrees]
-    moored, launch : strength finding in equilibrium, and during launch; None without a check
-    launch_tension, rise_tension : maximum tension during launch and during ascent [N]; None if
-        unknown
+    moored, launch : strength finding in equilibrium, and during launch, if any
+    launch_tension, rise_tension : maximum tension during launch and ascent [N], if known
     """
 
     number: int

@@ -53,14 +53,11 @@ def missing_block(
 ) -> str:
     """Create the `components:` section of a mooring file, with the missing keys of each component.
 
-    Comments explain each component and each key. Optional keys are comments, too. The block has no
-    heading if a file already has a section `components:`; paste the block into that section. The
-    text has only comments if nothing is missing, or if a mooring without equilibrium cannot be
-    checked.
+    Comments explain each key; optional keys are comments, too. If a file already has a section
+    `components:`, the block has no heading and is pasted into that section. The text has only
+    comments if no missing value is found, for example without an equilibrium.
 
-    Parameters
-    ----------
-    inventory : pieces and clamps, from which missing masses in air are listed
+    Masses in air that pieces and clamps of the `inventory` lack are optional keys.
     """
     found = list(findings)
     figures = [one.missing for one in found if one.missing is not None]

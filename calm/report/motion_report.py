@@ -54,7 +54,6 @@ def motion_report(
     ----------
     series : depths of the sensors and of other instruments over time
     time : (n,) times of the record
-    notes : notes on the input
     cards : summary card of each input file
     """
     bare = [one for one in series if not np.isfinite(one.measured).any()]
@@ -263,9 +262,9 @@ def motion_document(
 ) -> dict[str, Any]:
     """Return the JSON object of a motion study: factors with 95 % intervals, and depth errors [m].
 
-    The key `sensors` gives the agreement of each sensor in use with the estimate. Its key `plain`
-    gives the agreement with the line computed from currents alone. The key `held_out` lists
-    withheld sensors, the key `read` the input files.
+    The key `sensors` gives the agreement of each sensor with the estimate and, under `plain`, with
+    the line computed from currents alone. `held_out` lists withheld sensors, `read` the input
+    files.
     """
     sensors = [
         {"label": label, **_agreement_document(fit), "offset": float(offset)}
@@ -380,10 +379,7 @@ def _draw_depths(
 def false_figure(time: Any, false: Mapping[str, Any]) -> str:
     """Draw a row of marks for each current level, at the times of apparently false currents.
 
-    Parameters
-    ----------
-    time : (n,) times of the record
-    false : times with a false current, by name of the level
+    `time` are the (n,) times of the record, `false` the times with a false current by level.
     """
     names = list(false)
     left = min(max(text_width(name, _SIZE) for name in names) + 12.0, 0.4 * _WIDTH)

@@ -112,12 +112,12 @@ def where_text(finding: Finding) -> str:
 def open_groups(assessment: Assessment) -> list[list[Finding]]:
     """Group the open findings by cause, most severe first.
 
-    Findings share a cause as follows:
+    A group contains findings of one kind:
 
-    - failures, unknowns and warnings that differ only in component and values
-    - estimates for the same component, unless a missing value of the component is listed
-    - acceptances for the same component with the same reason
-    - findings of the same rule that are not judged
+    - failures, unknowns or warnings that differ only in component and values
+    - estimates for one component, unless its missing values are listed
+    - acceptances for one component with the same reason
+    - findings of one rule that are not judged
     """
     use = {one.label: one.use for one in assessment.inventory}
     return groups_of(assessment.every_finding(), use)

@@ -46,12 +46,8 @@ def result_part(
 ) -> ReportPart:
     """Build the short report of a result, for a terminal of 80 columns.
 
-    Values beyond a limit are marked ``!``, values close to a limit ``~``.
-
-    Parameters
-    ----------
-    facts : titles and texts that follow the summary
-    verbose : whether to include the accuracy and convergence of the solution
+    Values beyond a limit are marked ``!``, values close to a limit ``~``. `facts` are titles and
+    texts after the summary. `verbose` adds accuracy and convergence.
     """
     if result.several:
         return net_part(result, verbose=verbose)
@@ -282,9 +278,9 @@ def tilt_state(component: Component, tilt: float) -> State | None:
 def safety_state(result: AnyResult, record: ComponentRow) -> State | None:
     """Return FAIL if the safety factor is too small or the working load is exceeded, else None.
 
-    The required safety factor depends on the setting `checks.safety_factor`, on the material, and
-    on the type of mooring. The working load of a synthetic rope counts only if its breaking load is
-    unknown. An unknown safety factor (NaN) is not a failure.
+    The required factor depends on `checks.safety_factor`, the material and the type of mooring. The
+    working load of a synthetic rope counts only if its breaking load is unknown. An unknown safety
+    factor (NaN) is not a failure.
     """
     # the intended purpose of a single leg is irrelevant if the whole net is shown
     alone = not (result.several or result.towed)

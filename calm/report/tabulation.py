@@ -105,9 +105,8 @@ def by_speed(
 def to_document(tabulation: Tabulation) -> dict[str, Any]:
     """Return the JSON object of a table, with one object per ship speed.
 
-    Each object has the keys `speed` and `status`, and the keys of `FIGURES` (SI and degrees). The
-    key `frequency` is present only if the cable strums. The key `warnings` follows or, without an
-    equilibrium, `message` and `advice`.
+    Each object has `speed`, `status` and the keys of `FIGURES` (SI and degrees), with `frequency`
+    only if the cable strums. `warnings` or, without an equilibrium, `message` and `advice` follow.
     """
     return {
         "calm": __version__,

@@ -25,15 +25,11 @@ def verification_document(findings: Findings) -> dict[str, Any]:
 
     The keys are:
 
-    - `calm`: version of CALM
     - `checked`: number of values that do not agree by construction
     - `kinds`: number of values of each kind
     - `out`: number of values out of tolerance
-    - `cases`: list with one object per value
-
-    The keys of a verification case are `source`, `name`, `kind`, `expected`, `got`, `difference`,
-    `tolerance`, `unit`, `within`, and `why` (the reason for the tolerance). If no value was
-    computed, `reason` follows.
+    - `cases`: one object per value, in which `why` is the reason for the tolerance and `reason`
+      explains a value that was not computed
     """
     cases = [
         _case_document(source, outcome) for source, outcomes in findings for outcome in outcomes
@@ -68,8 +64,7 @@ def verification_part(findings: Findings) -> ReportPart:
 def figures(outcome: CaseOutcome) -> tuple[str, ...]:
     """Format the outcome of a verification case as a row, in the order of `COLUMNS`.
 
-    The computed value and the difference have one more decimal place than the tolerance, or two if
-    the expected value has at least two more.
+    Computed values have one or two decimal places more than the tolerance.
     """
     case = outcome.case
     expected = f"{case.expected:.12g}"

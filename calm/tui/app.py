@@ -37,10 +37,9 @@ _COLOURLESS = NoColor()
 class BuildApp(App[int]):
     """The line builder.
 
-    Keys, pastes and mouse presses are handled one after the other. A screen opened by a key is
-    therefore open before the next key is handled, even if keys are typed ahead. A key is handled
-    once all message queues that the key may have filled are empty. To wait for an empty queue, the
-    application posts a call to the queue.
+    Keys, pastes and mouse presses are handled one after the other, even if typed ahead. A screen
+    opened by a key is thus open before the next key is handled. A key is handled once all message
+    queues that the key may have filled are empty.
 
     Parameters
     ----------
@@ -50,7 +49,6 @@ class BuildApp(App[int]):
     Attributes
     ----------
     not_kept : reason why unsaved work could not be backed up on exit; empty without a failure
-    has_keys_waiting : whether any key has not been handled yet
     """
 
     TITLE = "calm build"

@@ -68,14 +68,9 @@ class ComponentList(TableCells, can_focus=False):
         by: str | None = None,
         favourites: frozenset[str] = frozenset(),
     ) -> None:
-        """List components, and move the cursor to the first component.
+        """List components in the given order, and move the cursor to the first component.
 
-        Parameters
-        ----------
-        found : components to list, in display order
-        index : search index of the catalogue
-        by : quantity whose column must be visible
-        favourites : ids of the favourite components
+        `by` is a quantity whose column must be visible. `favourites` are component ids.
         """
         before, columns = self.rows, self.columns
         cursor, like = self.cursor, (self._index, self._favourites)
@@ -148,12 +143,11 @@ _TITLES = {
 class CataloguePane(Vertical):
     """Pane with a search field, the components found, and the card of the chosen component.
 
-    A new cable or chain needs a length, a new clamp a position; the pane asks the user for them.
+    The pane also asks for the length of a new cable and the position of a new clamp.
 
     Parameters
     ----------
-    take : function that receives the purpose of the search, and the keys of the row: `use`,
-        `length`, `at` and `label`
+    take : function that receives the purpose of the search, and the keys of the row
     close : function that returns to the line
     """
 
@@ -224,7 +218,7 @@ class CataloguePane(Vertical):
 
         Parameters
         ----------
-        target : name of the row next to which the component is added; "" in an empty line
+        target : name of the row next to which the component is added
         clampable : whether to list only components that can be clamped on
         """
         self.purpose, self.clampable, self._role = purpose, clampable, role

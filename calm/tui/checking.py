@@ -21,7 +21,7 @@ class Reading:
     Attributes
     ----------
     text : text to write, with a missing unit added
-    complaint : reason why the text is invalid; empty if valid
+    complaint : reason why the text is invalid, if any
     offer : corrected text, if known
     explained : meaning of a valid text; empty if obvious
     """
@@ -162,13 +162,9 @@ def distance(before: str = "") -> Check:
 def length(before: str = "", *, towed: bool = False) -> Check:
     """Return a check for the length of a piece.
 
-    A valid text is one of:
-
-    - a length, such as ``98 m``
-    - a length with the load of its measurement, such as ``98 m at 2 kN``
-    - ``fit`` with the required depth of the top, or of the lower end if `towed`
-
-    A bare number gets the unit of the previous text, `before`.
+    Valid texts are a length, a length under load (``98 m at 2 kN``), or ``fit`` with the required
+    depth of the top. If `towed`, this depth is that of the lower end. A bare number gets the unit
+    of `before`.
     """
     plain = quantity(POSITIVE_LENGTH, usual_unit=unit_of(before))
     depth = quantity(QuantityField("length") if towed else LENGTH, usual_unit=unit_of(before))

@@ -75,9 +75,8 @@ def all_settled(fields: Iterable[Part]) -> bool:
 class Field(Horizontal):
     """Field of a form, with a name, a text input, and a note.
 
-    The only widget in the field is the input; the name and the note are drawn in its margins. When
-    the user presses Enter or leaves the field, a valid, changed text is posted as `Committed`. An
-    invalid text stays in the field and is marked.
+    When the user presses Enter or leaves the field, a valid, changed text is posted as `Committed`.
+    An invalid text stays in the field and is marked.
     """
 
     SCOPED_CSS = False  # styles depend on the width of the screen

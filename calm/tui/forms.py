@@ -46,7 +46,7 @@ class FormField:
     key : name of the field, or path of the edited key of the file, such as `position.latitude`
     takes : description shown next to the field
     above : heading of a group that begins with this field
-    columns : columns if the field is a table, with its rows in `text`; empty for other fields
+    columns : columns if the field is a table, with its rows in `text`
     is_needed : whether the model requires this key
     """
 
@@ -64,10 +64,8 @@ class FormField:
 def form_of(model: type[BaseModel], at: str = "", *, needed: bool = True) -> list[FormField]:
     """Create the form fields of a pydantic model, with required keys first and nested models last.
 
-    Parameters
-    ----------
-    at : path of the model in the file, such as `deployed.`
-    needed : whether the model is required; if not, required keys may be blank
+    `at` is the path of the model in the file, such as `deployed.`. Unless the model is `needed`,
+    required keys may be blank.
     """
     model.model_rebuild()  # resolves forward references
     own: list[FormField] = []

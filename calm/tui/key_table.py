@@ -27,8 +27,7 @@ class Action:
     place : widget or screen in which the keys work
     name : name of the method, without ``action_``, with its arguments
     keys : keys in Textual's notation, separated by commas; the first is displayed
-    title : two or three words, for the palette and the key bar
-    meaning : a sentence for the help
+    title, meaning : short name for palette and key bar, and sentence for the help
     hint : rank in the key bar, from 0; None if the key bar does not show the action
     palette : whether the command palette may list the action
     """

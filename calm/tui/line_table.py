@@ -201,7 +201,7 @@ class TableRow:
     spot : position in the line
     sign : symbol for the role of the component
     texts : text of each cell, by column name
-    state : most severe state of the findings on the row
+    state : most severe state of the findings
     wrong : whether the component is unknown
     """
 
@@ -226,9 +226,7 @@ def layout_for(
     Parameters
     ----------
     width : width of the table [cells]
-    component, label, length : width of the longest text in the column [cells]; component and label
-        share the width that other columns leave
-    leg : width of the longest name of a leg in a net [cells]; 0 for a single line
+    component, label, length, leg : longest text in the column [cells]; `leg` is 0 except for a net
     planned : whether any row has a planned depth
     """
     heads = {name: "n" if name == "count" else name for name in ("leg", *EDITABLE)}

@@ -49,14 +49,13 @@ class View:
 
     Attributes
     ----------
-    environment : name or file of the environment used; None for the default environment
     problems : mistakes in the text; a text with mistakes has no solution
     missing : names of missing parts of the line
-    file : parsed file; None if the text has mistakes or the line is incomplete. A line without an
-        anchor gets an anchor that holds any load.
-    failure : reason why the line has no equilibrium, or None
+    file : parsed file; None if the text has mistakes or the line is incomplete. A missing anchor is
+        replaced by an anchor that holds any load.
+    failure : reason why the line has no equilibrium
     findings : findings of the design check; empty for a tow
-    tighter : findings in other situations in which the utilisation is higher than in `findings`
+    tighter : findings in other situations with a higher utilisation than in `findings`
     environments : names of the environments besides the default environment
     rows : results of each piece and clamp in file order; clamps follow their piece
     complete : whether `findings` has all findings of `calm check`; true for a solved tow
@@ -113,20 +112,15 @@ def judge(
 ) -> View:
     """Solve the line in the text of a file, and apply the design rules to its equilibrium.
 
-    The function may be called in any thread, and raises no exception.
+    The view has the results of `calm run`, and the findings of `calm check` for the situation as
+    given. The function may be called in any thread, and raises no exception.
 
     Parameters
     ----------
-    path : path of the file, needed to resolve relative file names; None if there is no file
-    environment : name of an environment in the file, or path of an environment file; None for the
-        default environment
+    path : path of the file, for relative file names
+    environment : name of an environment in the file, or path of an environment file
     catalogs : catalogue files of the user
-    keep : earlier view of the same file, whose solutions are reused if they still apply
-
-    Returns
-    -------
-    View
-        The results of `calm run` and the findings of `calm check` for the situation as given.
+    keep : earlier view of the same file, whose solutions are reused
     """
     memory = Memory() if keep is None else keep.memory
     view = View(text, _as_path(path), environment, memory=memory)
@@ -316,11 +310,11 @@ class FoundRow:
 
     Attributes
     ----------
-    place : position of the piece or instrument in the parsed file
+    place : position in the parsed file
     length : cut length [m]; None for a clamp or an unsolved fitted length
-    figures : values in the columns of the line table, by column name; empty without a solution
-    use : maximum utilisation in the findings on the row, or None if unknown
-    state : most severe state of the findings on the row, or None without findings
+    figures : values in the columns of the line table, by column name
+    use : maximum utilisation in the findings, if known
+    state : most severe state of the findings, if any
     lacks_strength : whether a value needed for the strength rule is missing
     """
 

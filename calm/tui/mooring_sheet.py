@@ -60,10 +60,8 @@ def settings() -> list[str]:
 def sheet_of(name: str, draft: Draft, part: Piece | Clamp | None) -> Sheet:
     """Create a sheet that shows the values in the file.
 
-    Parameters
-    ----------
-    name : sheet in `SHEETS`, or section from `settings`
-    part : piece or clamp of the row under the cursor
+    `name` is a sheet in `SHEETS` or a section from `settings`; `part` is in the row under the
+    cursor.
     """
     fields = MooringKeys.model_fields
     title, keys = SHEETS.get(name, (name.capitalize(), (name,)))
@@ -168,10 +166,7 @@ def serial_of_equipment(text: str) -> Reading:
 def entry_text(draft: Draft, rows: Location, called: tuple[str, str], key: str) -> str:
     """Return the text of a key in an entry of a list in the file, or "" without an entry.
 
-    Parameters
-    ----------
-    rows : path of the list
-    called : key and text that identify the entry
+    `rows` is the path of the list. `called` is the key and text that identify the entry.
     """
     index = _index(draft, rows, called)
     return "" if index is None else draft.text_at((*rows, index, key))
@@ -241,12 +236,11 @@ class Missing:
 
     Attributes
     ----------
-    use, kind : id and kind of the component
-    labels : labels of the pieces and clamps concerned, as keys of a dict
-    targets : for each key, locations in the file to which the value is written: the definition if
-        the file has one, otherwise all rows that lack the value. For a part of an assembly, the
-        location is the row of the assembly.
-    estimates : estimates for the class of component, by key, as texts without their source
+    labels : labels of the pieces and clamps concerned
+    targets : locations in the file for each missing value, by key: the definition of the component
+        if the file has one, otherwise all rows that lack the value. A part of an assembly has the
+        row of the assembly.
+    estimates : estimates for the class of component, by key, without their source
     """
 
     use: str
@@ -309,16 +303,8 @@ def with_figures(
 ) -> Draft:
     """Write the entered component values to the file, and return the new draft.
 
-    Parameters
-    ----------
-    missing : missing values, with their locations in the file
-    texts : entered texts by ``component.key``; empty for a value that stays unknown
-    source : source of all values; may be empty
-
-    Raises
-    ------
-    EditError
-        The file does not allow the change.
+    `texts` are by ``component.key``; an empty text leaves a value unknown. `source` may be empty.
+    Raise EditError if the file does not allow the change.
     """
     for each in missing:
         for key, targets in each.targets.items():

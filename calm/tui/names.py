@@ -73,14 +73,9 @@ def labels_of(draft: Draft) -> dict[Place, list[str]]:
 
 
 def followed(before: Draft, after: Draft, moved: Mapping[Place, Place]) -> tuple[Draft, list[str]]:
-    """Update the references to labels after an edit.
+    """Update the references to labels after an edit; also return messages on the updates.
 
-    Return the updated draft, and messages about the updates.
-
-    Parameters
-    ----------
-    before, after : file before and after the edit
-    moved : new positions of the remaining rows, by old position
+    `moved` maps the old positions of the remaining rows to the new positions.
     """
     names = list(named_in(after))
     old, new = labels_of(before), labels_of(after)

@@ -74,7 +74,7 @@ class Painted:
         self._touched.update(range(len(self._wanted)))
 
     def take(self, text: str) -> str:
-        """Store the cells of an output text, and return the rest, which must be sent at once."""
+        """Store the cells of an output text; return other output, which must be sent at once."""
         text = self._rest + text
         cut = _INCOMPLETE.search(text)
         self._rest = text[cut.start() :] if cut else ""
@@ -183,7 +183,7 @@ class TerminalOutput:
         return type(f"Painting{terminal.__name__}", (_PaintingDriver, terminal), {"output": self})
 
     def take(self, text: str, send: Callable[[str], None]) -> None:
-        """Store the cells of an output text, and send the rest of the text at once."""
+        """Store the cells of an output text; send other output at once."""
         with self._lock:
             self._send = send
             if at_once := self._painted.take(text):

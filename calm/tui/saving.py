@@ -27,9 +27,9 @@ _READ_AGAIN = "Reloaded: the file was changed by another program"
 
 
 class Saving:
-    """Saver of the file of a workspace.
+    """Saver of the file of a workspace, which detects changes by other programs.
 
-    The user is asked before a file is overwritten. Changes by other programs are detected.
+    The user is asked before a file is overwritten.
 
     Parameters
     ----------
@@ -178,9 +178,9 @@ class Saving:
     # work of an earlier run
 
     def offer(self, kept: editing.KeptWork, go_on: Callable[[], object]) -> None:
-        """Offer to recover unsaved work; show when it was stored, and whether the file is newer.
+        """Offer to recover unsaved work, with its time, and a note if the file is newer.
 
-        The user must confirm discarding the work, because this cannot be undone.
+        The user must confirm discarding the work, because discarding cannot be undone.
         """
         app, session, keeper = self._app, self._session, kept.keeper
 

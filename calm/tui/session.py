@@ -19,10 +19,6 @@ _OF_THE_ROW = frozenset({"use", "label", "count", "at", "clamps"})
 class Session:
     """Editing session of a mooring or tow file.
 
-    Parameters
-    ----------
-    environment : see `EnvironmentChoice`
-
     Attributes
     ----------
     catalogs : catalogue files given on the command line
@@ -218,8 +214,7 @@ class Session:
     def move(self, spots: Iterable[Place], by: int) -> tuple[Place, ...]:
         """Move pieces or a single clamp up (-1) or down (1), and return their new rows.
 
-        Nothing moves beyond the ends of the line, and no clamp beyond the other clamps on its
-        piece.
+        Nothing moves beyond the end of the line, or of the clamps of a piece.
         """
         chosen = _whole(spots)
         moved = [spot for spot in chosen if not spot.is_clamp] or chosen

@@ -29,15 +29,9 @@ def open_session(
 ) -> tuple[Session, KeptWork | None]:
     """Open a session for a file, and return it with any unsaved work of an earlier session.
 
-    Parameters
-    ----------
-    path : a file that need not exist yet; None for an unnamed file
-
-    Raises
-    ------
-    InputError, UsageError
-        The file, an environment file or a catalogue cannot be read, the folder of a new file does
-        not exist, or the file has no such environment.
+    The file need not exist yet; `path` is None for an unnamed file. Raise InputError or UsageError
+    if a file cannot be read, the folder of a new file does not exist, or the environment is
+    unknown.
     """
     file = WorkingFile(path)
     if path is not None and file.stamp is not None:

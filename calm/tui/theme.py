@@ -100,11 +100,8 @@ A terminal with eight colours lacks the bright ones, and also keeps its own colo
 class Legible(LineFilter):
     """Line filter that makes text legible on any background of a theme or a picture.
 
-    Parameters
-    ----------
-    dark : whether the background of the terminal is dark
-    sixteen : whether the terminal uses its own sixteen colours, so that the background colour is
-        unknown
+    `dark` describes the background. With `sixteen`, the terminal uses its own colours, and the
+    exact background is unknown.
     """
 
     def __init__(self, *, dark: bool, sixteen: bool) -> None:
@@ -129,10 +126,7 @@ class Legible(LineFilter):
 
 @lru_cache(4)
 def legible(dark: bool, sixteen: bool) -> Legible:
-    """Return the filter for a dark or light background.
-
-    Each filter is created only once, because Textual caches the filtered lines by filter.
-    """
+    """Return the filter for a dark or light background, always the same object."""
     return Legible(dark=dark, sixteen=sixteen)
 
 

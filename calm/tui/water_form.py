@@ -51,16 +51,9 @@ Place = tuple[str, ...]
 
 
 class WaterForm:
-    """Access to one environment in a file.
+    """Access to one environment in a file; None as `variant` is the default environment.
 
-    Parameters
-    ----------
-    variant : name of an environment, merged with the default environment; None for the default
-
-    Raises
-    ------
-    EditError
-        Raised by every change that the text of the file does not allow.
+    Every change raises EditError if the text of the file does not allow it.
     """
 
     def __init__(self, draft: Draft, variant: str | None) -> None:
@@ -113,8 +106,7 @@ class WaterForm:
     def table(self, *keys: str) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
         """Return the columns and the rows of a table as texts; missing cells are empty.
 
-        Columns and rows are empty without a table, or if a row is longer than the columns or has
-        nested values.
+        Both results are empty without a table, or if a row is too long or has nested values.
         """
         table = self.value(*keys)
         columns = table.get("columns") if isinstance(table, dict) else None

@@ -82,9 +82,8 @@ def imported(path: Path, time: str, depth: float) -> tuple[Sequence[str], Sequen
 
     Returns
     -------
-    columns : depth [m], and either speed [m/s] and direction [degrees] or eastward and northward
-        velocity [m/s], whichever needs fewer digits. With an upward velocity, all three velocities
-        follow the depth.
+    columns : depth [m], and either speed [m/s] and direction [degrees] or velocities [m/s],
+        whichever needs fewer digits; always velocities if there is an upward velocity
     rows : one row for each level, from the top, with all digits of the file
 
     Raises
@@ -163,9 +162,7 @@ def offered_headings(headings: Sequence[str] | None, columns: Sequence[str]) -> 
 
 
 def rows_in(columns: Sequence[str], headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Rows:
-    """Convert copied rows to the columns of a table.
-
-    Texts are kept if the copied rows have the same columns as the table.
+    """Convert copied rows to the columns of a table; equal columns keep their texts.
 
     Raises
     ------

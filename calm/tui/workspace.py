@@ -62,13 +62,12 @@ class Workspace:
     Parameters
     ----------
     tell : function that shows a message until the next key; its argument `wrong` marks an error
-    edited : function that checks the draft and keeps a backup copy; called after each change
+    edited : function that checks the draft and keeps a backup copy
 
     Attributes
     ----------
-    index : search index of the catalogue and the components of the file; None until the catalogue
-        is loaded
-    view : last view of the file; None until the file is first solved
+    index : search index of the catalogue and the components of the file, once loaded
+    view : last view of the file, once solved
     good : last view with an equilibrium
     is_late : whether the view has been out of date for some time
     documents_elsewhere : message on how to get reports and sheets if the builder cannot write them
@@ -108,10 +107,7 @@ class Workspace:
         )
 
     def judged(self, otherwise: str) -> View | None:
-        """Return the view if it is up to date.
-
-        Otherwise show the message `otherwise`, and return None.
-        """
+        """Return the view if it is up to date, else show a message and return None."""
         if not self.is_fresh:
             self.tell(otherwise)
             return None
@@ -152,10 +148,7 @@ _FULL_CHECK_DELAY = 0.5  # seconds without a change before launch, recovery and 
 class Judging:
     """Workers that solve and check the draft of a workspace.
 
-    Parameters
-    ----------
-    app : application that runs the workers
-    show : function that updates the screens; its argument `is_first` marks the first view
+    `show` updates the screens; its argument `is_first` marks the first view.
     """
 
     def __init__(self, app: App[int], workspace: Workspace, show: Callable[..., object]) -> None:

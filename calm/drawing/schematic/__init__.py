@@ -48,13 +48,11 @@ _MOORED_AT, _TOWED_AT = 26.0, 46.0
 def schematic_svg(file: MooringFile, result: AnyResult | None = None) -> str:
     """Draw the schematic of a line as one SVG picture.
 
-    Up to about 50 parts fit on an A4 page; more parts need a longer sheet. The picture has no
-    external references, identifiers or style sheets. Long texts are wrapped and never cut. The same
-    line always gives the same picture.
+    Beyond about 50 parts, the picture is longer than an A4 page. It has no external references,
+    identifiers or style sheets. Texts are never cut. The same line always gives the same picture.
 
-    With a result, depths are those of the loaded line in the current. Without a result, depths are
-    those of the upright, unstretched line, and unknown for a tow or a line with a float at the
-    surface.
+    Without a result, depths are those of the upright, unstretched line, and unknown for a tow or a
+    line with a float at the surface.
     """
     (drawn,) = _draw_sheets(schematic_of(file, result), inf)
     return drawn
@@ -170,7 +168,7 @@ class LineColumn:
 
     Attributes
     ----------
-    headings : headings of the values; each is a sequence of text lines, with the unit last
+    headings : text lines of each heading, with the unit last
     rights : right edge of each column of values
     text : left and right edge of the texts
     line_at : distance of the line from the left edge
@@ -191,11 +189,7 @@ def column_of(
 ) -> LineColumn:
     """Compute the layout of a column; each column of values is as wide as its widest entry.
 
-    Parameters
-    ----------
-    parts : rows of text for each part next to the line
-    headings : headings of the values
-    line_at : distance of the line from the left edge; the symbols have twice this width
+    `line_at` is the distance of the line from the left edge; symbols have twice this width.
     """
     cells = [[*heading] for heading in headings]
     for row in parts:

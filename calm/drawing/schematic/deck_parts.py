@@ -48,7 +48,7 @@ def parts_of(
 
     Parameters
     ----------
-    every : all items of the line, in which labels chosen by the user are looked up
+    every : all items of the line, with labels chosen by the user
     cells : function that returns the values next to a part
     surface : whether the top of the line floats at the surface
     """

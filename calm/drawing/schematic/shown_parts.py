@@ -43,7 +43,7 @@ class ShownPart:
     cable : symbol of the cable that the part is or is clamped on; None for a rigid part
     length : length of a cable [m], NaN if unknown
     clamped : whether the part is clamped on the part above it
-    junction : whether the part is a junction, above which a page may end
+    junction : whether a page may end above the part
     """
 
     sign: Sign
@@ -61,14 +61,13 @@ class Schematic:
 
     Attributes
     ----------
-    title : name of the line
     subtitle : depth and position of a mooring, or speed of a tow
     note : explanation of the depths
     columns : names of the columns of values, from `HEADINGS`
     parts : parts from the top, with clamped instruments after their piece
     surface : whether the first part floats at the surface
-    towed_by, sea, seabed : rows of text at the ship or helicopter, the sea surface and the seabed;
-        None if absent, or if the depth of the seabed is unknown
+    towed_by, sea, seabed : rows of text at the ship or helicopter, sea surface and seabed, if
+        present
     """
 
     title: str
@@ -211,7 +210,6 @@ class Levels:
     Attributes
     ----------
     lengths, depths : cut length, and depth of the upper end, of each piece
-    clamps : depth of each clamped instrument
     first : piece at the top of the line
     surface : whether the top piece floats at the surface
     note : explanation of the depths

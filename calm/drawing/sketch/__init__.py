@@ -53,8 +53,8 @@ def elevation(
     """Draw a side view of a line, in the vertical plane of its excursion or of the tow.
 
     Distances are from the anchor towards the free end, or from the ship backward. Horizontal and
-    vertical scales differ. The line in still water is dotted. Names of parts need at least 50 cells
-    of width. `overlays` are dashed shapes in other environments, or of other designs.
+    vertical scales differ. The line in still water is dotted; `overlays` are dashed. Names of parts
+    need a width of 50 cells.
     """
     side = line_picture.elevation_of(result, overlays)
     moored = not result.towed

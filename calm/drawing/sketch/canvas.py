@@ -179,8 +179,8 @@ class PlotFrame:
     def scale_across(self, values: Iterable[float], *units: str) -> None:
         """Write numbers along the last row of the canvas, and ticks on the row above.
 
-        `units` are alternative texts for the unit; the first that fits follows the numbers. If none
-        fits, numbers are removed for the last text, but two numbers remain.
+        `units` are alternative texts for the unit; the first that fits is written. For the last,
+        numbers may be omitted.
         """
         row, edge = self.canvas.height - 1, self.canvas.width
         labels: list[tuple[int, str]] = []
@@ -231,12 +231,11 @@ def scaled_frame(
     ----------
     size : numbers of columns and rows of the canvas
     caption : text above the frame, omitted if the canvas has too few rows
-    across : values at the left and the right edge
-    down : values at the upper and the lower edge
+    across, down : values at the left and right edge, and at the upper and lower edge
     units : alternative texts for the unit of the horizontal scale (see `PlotFrame.scale_across`)
     seabed : depth of the seabed below the frame [m], if any
     margin : number of free columns on the right
-    per_tick : number of columns for each number on the horizontal scale
+    per_tick : number of columns per horizontal number
     """
     canvas, head = Canvas(*size), header_rows(size[1])
     if head:

@@ -31,11 +31,10 @@ def leaf(section: Section, number: int) -> str:
 
 
 def page(report: Report, leaves: Sequence[str] | None = None) -> str:
-    """Render a report as an HTML page.
+    """Render a report as an HTML page with embedded style, script and drawings.
 
-    The page embeds style, script and drawings. The script only sorts and filters the checks. Texts
-    are escaped; invalid Unicode becomes question marks. `leaves` are sections already rendered by
-    `leaf`.
+    The script only sorts and filters the checks. Texts are escaped. `leaves` are sections already
+    rendered by `leaf`.
     """
     leaves = leaves or [leaf(section, at) for at, section in enumerate(report.sections, 1)]
     template = _environment().get_template("page.html.jinja")
