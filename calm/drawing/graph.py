@@ -1,6 +1,6 @@
 """Graphs as SVG: scales, axes and legends.
 
-Lengths are in points (1/72 inch); the upper left corner of a graph is its origin.
+Lengths are in points (1/72 inch). The origin is the upper left corner of the graph.
 """
 
 from __future__ import annotations
@@ -193,7 +193,7 @@ class Stroke(NamedTuple):
     square: bool = False
 
     def attributes(self) -> dict[str, float | str]:
-        """Return the attributes that give this stroke to an SVG element."""
+        """Return the SVG attributes of a line with this stroke."""
         written: dict[str, float | str] = {"stroke": self.colour, "stroke_width": self.width}
         if self.dashes:
             written["stroke_dasharray"] = " ".join(f"{each:g}" for each in self.dashes)

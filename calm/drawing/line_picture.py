@@ -230,7 +230,7 @@ def levels_of(result: AnyResult) -> tuple[float, float]:
 def seabed_of(result: AnyResult) -> float:
     """Return the depth of the deepest seabed in the picture [m].
 
-    This seabed is at an anchor, or at the end of a slope that is drawn.
+    The deepest seabed is at an anchor, or at the end of a slope.
     """
     beds = (float(bed.y.max()) for bed in _seabeds(result))
     return max(*(float(one.water.depth) for one in (result, *result.legs)), *beds)
@@ -328,7 +328,7 @@ def together(labels: list[str]) -> str:
 
 
 def spread(wanted: list[float], gap: float, start: float, end: float) -> list[float]:
-    """Shift positions as little as possible, so that they keep a minimum distance.
+    """Shift positions as little as possible, to obtain a minimum distance between positions.
 
     The sum of the squared shifts is minimal.
 

@@ -32,10 +32,10 @@ _TIME_STAMP = (1980, 1, 1, 0, 0, 0)
 
 
 def packed(python: str) -> bytes:
-    """Create the ZIP archive and return its content. The same files always give the same bytes.
+    """Create the ZIP archive and return the content; the same files always give the same bytes.
 
-    If the page has the Python version of this process, such as "3.13", the archive also contains
-    compiled modules.
+    The archive also contains compiled modules if the page has the Python version (such as "3.13")
+    of this process.
     """
     compiles = python == f"{sys.version_info[0]}.{sys.version_info[1]}"
     content = io.BytesIO()

@@ -73,7 +73,7 @@ def document(kind: str, view: live.View) -> tuple[str, bytes]:
     """Create a document for a solved line, and return its name and content.
 
     `kind` is in `DOCUMENTS`. Raise UsageError if the line is not solved, or the document is not
-    available for a tow. Raise NoEquilibrium if the line has none.
+    available for a tow. Raise NoEquilibrium for a line without equilibrium.
     """
     wanted = next(each for each in DOCUMENTS if each.kind == kind)
     name = f"{view.path.stem}{wanted.suffix}"

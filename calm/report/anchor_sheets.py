@@ -345,7 +345,7 @@ def located_figure(located: Located) -> str:
     """Draw an acoustic survey of the anchor as SVG, with a circle for each range.
 
     The circles are at the depth of the transponder; rejected ranges are dashed. The right panel
-    shows the anchor position with its 95 % ellipse.
+    shows the anchor position with a 95 % ellipse.
     """
     frame, survey = located.survey.frame, located.survey
     ships = frame.place(

@@ -1,6 +1,6 @@
 """Building blocks of all reports: on a terminal, in HTML or PDF, and in notebooks.
 
-All texts are plain text without markup; each output format escapes them as required.
+All texts are plain text without markup; each output format escapes special characters.
 """
 
 from __future__ import annotations
@@ -93,7 +93,7 @@ class Table:
     ruled: bool = True
 
     def without_empty_columns(self) -> Table:
-        """Return the table without empty columns; a table to be filled in by hand keeps them."""
+        """Return the table without empty columns, except a table to be filled in by hand."""
         count = len(self.columns)
         full = [row for row in self.rows if len(row) == count]
         kept = [at for at in range(count) if any(row[at] != _EMPTY for row in full)]
@@ -305,7 +305,7 @@ class Section:
 
 @dataclass(frozen=True)
 class Report:
-    """A report with all its sections.
+    """A report with all sections.
 
     Attributes
     ----------
@@ -363,7 +363,7 @@ def number(heading: str, show: Shown = "", unit: str = "", **more: Any) -> Field
 
 
 def of_first(*fields: Field) -> list[Field]:
-    """Adapt columns of items to rows whose first member is the item."""
+    """Adapt columns of items to rows that are tuples with the item as first member."""
 
     def first(show: Callable[[Any], Any]) -> Callable[[Any], Any]:
         return lambda row: show(row[0])

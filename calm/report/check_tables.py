@@ -92,7 +92,8 @@ GRAVE = (State.FAIL, State.UNKNOWN, State.WARN)
 def counted_as(finding: Finding) -> tuple[Hashable, ...]:
     """Return a key that is equal for findings that are counted together.
 
-    These are findings on equal pieces from one row of the file, if their state is in `GRAVE`.
+    Findings on equal pieces from one row of the file are counted together if their state is in
+    `GRAVE`.
     """
     place = finding.place
     if finding.missing is not None or place is None or finding.state not in GRAVE:
@@ -118,9 +119,9 @@ def limits_table(limits: Iterable[LimitKey], title: str = "Limits as used") -> T
 
 
 def component_text(name: str, units: int) -> str:
-    """Format the name of a component, with the number of units if it consists of several.
+    """Format the name of a component, with the number of units if there are several.
 
-    An example of such a component is a pair of releases.
+    An example is a pair of releases.
     """
     return f"{name}, {units} units each" if units > 1 else name
 

@@ -163,8 +163,9 @@ def pdf_leaf(part: Report | Section) -> str:
 def _members(part: Any) -> dict[str, Any] | str:
     """Convert an object of a report to data for the PDF template.
 
-    A section becomes its printed members, a cell without further attributes its text, and any other
-    object a dictionary with its kind.
+    - A section becomes its printed members.
+    - A cell without further attributes becomes its text.
+    - Any other object becomes a dictionary with its kind.
     """
     if isinstance(part, Cell):
         text, *more = vars(part).values()

@@ -154,10 +154,9 @@ class LoadCase:
 
 
 def load_cases(assessment: Assessment) -> list[LoadCase]:
-    """List the load cases of a mooring.
+    """List the load cases of a mooring, environment by environment.
 
-    Each environment is listed as given and then with its changes; still water is listed once, at
-    the end.
+    Each environment is followed by its variants, such as strumming. Still water is last.
     """
     numbers: dict[str, int] = {}
     found: dict[str, LoadCase] = {}

@@ -224,7 +224,7 @@ def _item(group: Sequence[Finding], number: int, *, keys: bool) -> OpenItem:
 
 
 def _extreme(finding: Finding) -> tuple[int, float]:
-    """Sort key for findings without a utilisation: state, then value."""
+    """Sort key for findings without a utilisation: state, then magnitude of the value."""
     value = finding.value or 0.0
     return finding.state.severity, -value if finding.sense == ">=" else abs(value)
 
@@ -308,10 +308,9 @@ def draft(assessment: Assessment) -> bool:
 
 
 def verdict_sentence(assessment: Assessment) -> str:
-    """Describe the verdict in sentences.
+    """Describe the verdict in sentences, with the number of open items and the rules concerned.
 
-    The sentences give the number of open items and the rules concerned. They also list every
-    utilisation over 100 % that is not a failure.
+    The sentences also list every utilisation over 100 % that is not a failure.
     """
     groups = open_groups(assessment)
     counts = Counter(governing(group).state for group in groups)

@@ -31,7 +31,7 @@ _GRAVE = (State.FAIL, State.WARN)
 class Offer:
     """A suggested change, with its effect (`title`) and its name in the history (`label`).
 
-    `make` applies the change to a draft. This may solve the line, and raises `CalmError` if the
+    `make` applies the change to a draft, and may solve the line. `make` raises `CalmError` if the
     change does not help.
     """
 
@@ -87,8 +87,8 @@ def _is_of_anchor(finding: Finding) -> bool:
 def sized(mooring: Design, target: str, change: str) -> Offer:
     """Return an offer to change a quantity by the smallest amount that meets a target.
 
-    The target and the change are in the syntax of `calm size`. Raise UsageError if one of them is
-    invalid.
+    The target and the change are in the syntax of `calm size`. Raise UsageError if the target or
+    the change is invalid.
     """
     adjustment = parse_change(change, mooring.file)
     targets.parse_target(target, mooring.file)

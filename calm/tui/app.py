@@ -298,10 +298,7 @@ class BuildApp(App[int]):
     # unsaved work, and the exit
 
     def keep(self) -> str:
-        """Save a backup copy of unsaved work.
-
-        Return the reason if this fails, otherwise "".
-        """
+        """Save a backup copy of unsaved work. Return the reason for a failure, otherwise ""."""
         try:
             self.session.note_unsaved().keep()
         except (CalmError, OSError) as error:
@@ -332,9 +329,8 @@ class BuildApp(App[int]):
             self.screen.settle()
 
     def save_copy_on_exit(self) -> None:
-        """Save a backup copy, unless the user has quit.
-
-        If this fails, `not_kept` gives the reason.
+        """Save a backup copy, unless the user has quit; note the reason for a failure in
+        `not_kept`.
         """
         if not self._is_left:
             self.not_kept = self.keep()

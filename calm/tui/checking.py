@@ -1,4 +1,4 @@
-"""Checks of typed text at each key press: accept it, complete its unit, or reject it."""
+"""Checks of typed text at each key press, which accept, complete or reject the text."""
 
 import re
 from collections.abc import Callable, Mapping, Sequence
@@ -163,8 +163,8 @@ def length(before: str = "", *, towed: bool = False) -> Check:
     """Return a check for the length of a piece.
 
     Valid texts are a length, a length under load (``98 m at 2 kN``), or ``fit`` with the required
-    depth of the top. If `towed`, this depth is that of the lower end. A bare number gets the unit
-    of `before`.
+    depth of the top. For a towed line, ``fit`` takes the depth of the lower end. A bare number gets
+    the unit of `before`.
     """
     plain = quantity(POSITIVE_LENGTH, usual_unit=unit_of(before))
     depth = quantity(QuantityField("length") if towed else LENGTH, usual_unit=unit_of(before))

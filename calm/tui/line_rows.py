@@ -44,7 +44,7 @@ def table_rows(
     """Return the rows of the line table, one for each item and clamp.
 
     An item of several pieces shows the least favourable values. Results for an earlier text are
-    shown only in rows with the same component and label, and never in `added` rows.
+    shown only in rows with unchanged component and label, and never in `added` rows.
     """
     found = _results_by_row(draft, view, added)
     wrong = _items_with_mistakes(draft, view)

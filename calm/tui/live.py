@@ -172,7 +172,7 @@ class HeldLine:
     def needed(self, anchor: Anchor) -> float:
         """Return the weight in water that a given anchor must have in this situation [N].
 
-        This weight depends on the friction coefficient of the anchor.
+        The weight depends on the friction coefficient of the anchor.
         """
         load, file = self.result.anchor_load, _with_anchor(self.result.file, anchor)
         factor = file.checks.anchor_factor

@@ -66,9 +66,8 @@ class Painted:
         self._touched.clear()
 
     def forget(self) -> None:
-        """Treat all displayed cells as unknown.
-
-        This is necessary after another program has written to the terminal.
+        """Treat all displayed cells as unknown, because another program has written to the
+        terminal.
         """
         self._shown = [[_UNKNOWN] * len(row) for row in self._shown]
         self._touched.update(range(len(self._wanted)))
@@ -268,7 +267,7 @@ _SEEN_ON_BLANKS = {"4", "7", "9", "21", "53"}
 def _ground(style: str) -> str:
     """Return the part of a style that is visible on blank cells.
 
-    This is the background or, for underlined and similar styles, the whole style.
+    The visible part is the background or, for underlined and similar styles, the whole style.
     """
     kept, codes = [], iter(style.split(";"))
     for code in codes:

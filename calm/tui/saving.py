@@ -178,7 +178,7 @@ class Saving:
     # work of an earlier run
 
     def offer(self, kept: editing.KeptWork, go_on: Callable[[], object]) -> None:
-        """Offer to recover unsaved work, with its time, and a note if the file is newer.
+        """Offer to recover unsaved work; show the time of the work, and whether the file is newer.
 
         The user must confirm discarding the work, because discarding cannot be undone.
         """

@@ -251,7 +251,7 @@ class TableCells(Scrolled, inherit_bindings=False):
             self.refresh_line(number + self.HEADING)
 
     def follow(self) -> bool:
-        """Scroll to make the cursor visible; return whether this was necessary."""
+        """Scroll to make the cursor visible; return whether scrolling was necessary."""
         page = max(self.scrollable_content_region.height - self.HEADING, 1)
         beyond = min(self.BEYOND, (page - 1) // 2)
         top = self.scroll_offset.y

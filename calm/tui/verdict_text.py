@@ -190,8 +190,8 @@ def _anchor_weight_line(
 ) -> VerdictLine:
     """Return the verdict line on the required and the actual anchor weight.
 
-    Without an anchor, only the required weight is given: the maximum over all situations, once
-    they are solved.
+    Without an anchor, the line gives only the required weight. The required weight is the maximum
+    over all situations, once the situations are solved.
     """
     if worst is None:
         needed, when = result.anchor_load.required_weight, ""

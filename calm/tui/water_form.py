@@ -106,7 +106,8 @@ class WaterForm:
     def table(self, *keys: str) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
         """Return the columns and the rows of a table as texts; missing cells are empty.
 
-        Both results are empty without a table, or if a row is too long or has nested values.
+        Without a table, or if a row is too long or has nested values, there are no columns and no
+        rows.
         """
         table = self.value(*keys)
         columns = table.get("columns") if isinstance(table, dict) else None

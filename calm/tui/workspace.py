@@ -129,7 +129,7 @@ class Workspace:
         return self.session.name + (" (not saved)" if self.session.changed else "")
 
     def attempt(self, change: Callable[[], object]) -> tuple[bool, Place | None]:
-        """Make a change, and return its success and the row that `change` returned.
+        """Make a change; return whether the change succeeded, and the row that `change` returned.
 
         If the change fails, a message shows the reason.
         """
@@ -181,10 +181,7 @@ class Judging:
             self._show()
 
     def ask(self) -> None:
-        """Solve and check the draft.
-
-        If the worker is busy, wait until it is free, and then check only the latest draft.
-        """
+        """Solve and check the draft; a busy worker continues with the latest draft when free."""
         self._is_stale = False
         self._stop_waiting()
         if self._is_judging:

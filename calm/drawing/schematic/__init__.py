@@ -48,11 +48,12 @@ _MOORED_AT, _TOWED_AT = 26.0, 46.0
 def schematic_svg(file: MooringFile, result: AnyResult | None = None) -> str:
     """Draw the schematic of a line as one SVG picture.
 
-    Beyond about 50 parts, the picture is longer than an A4 page. It has no external references,
-    identifiers or style sheets. Texts are never cut. The same line always gives the same picture.
+    Beyond about 50 parts, the picture is longer than an A4 page. The picture has no external
+    references, identifiers or style sheets. Texts are never cut. The same line always gives the
+    same picture.
 
-    Without a result, depths are those of the upright, unstretched line, and unknown for a tow or a
-    line with a float at the surface.
+    Without a result, depths are those of the upright, unstretched line. For a tow or a line with a
+    float at the surface, such depths are unknown.
     """
     (drawn,) = _draw_sheets(schematic_of(file, result), inf)
     return drawn
@@ -189,7 +190,7 @@ def column_of(
 ) -> LineColumn:
     """Compute the layout of a column; each column of values is as wide as its widest entry.
 
-    `line_at` is the distance of the line from the left edge; symbols have twice this width.
+    `line_at` is the distance of the line from the left edge. Symbols are twice as wide.
     """
     cells = [[*heading] for heading in headings]
     for row in parts:
@@ -287,7 +288,7 @@ def _text_lines(row: TextRow, room: float) -> list[TextLine]:
 def divided(parts: Sequence[PlacedPart], room: float) -> Iterator[list[PlacedPart]]:
     """Divide parts into groups at most `room` high.
 
-    A group ends above a junction if there is a junction near the end of the group, otherwise
+    A group ends above a junction, if one is near the end of the group. Otherwise the group ends
     between two pieces or, failing that, between two clamps.
     """
     rest = [*parts]

@@ -142,7 +142,7 @@ def _placed_names(side: LinePicture, rows: int, room: int) -> list[tuple[int, st
 def _least_needed(found: list[tuple[str, PictureMark]], wanted: list[float], crowded: int) -> int:
     """Return the index of the name to omit among crowded names.
 
-    Names of instruments are omitted first; among these, the name closest to the middle.
+    Instruments come first and, among equal roles, the name closest to the middle.
     """
     around = [i for i, row in enumerate(wanted) if abs(row - wanted[crowded]) <= 2.0 * _FARTHEST]
     middle = sum(around) / len(around)
