@@ -338,6 +338,7 @@ def spread(wanted: list[float], gap: float, start: float, end: float) -> list[fl
     gap : minimum distance
     start, end : range of the new positions, which extend beyond `end` without enough room
     """
+    # isotonic regression of the positions without the gaps
     pools: list[tuple[float, int]] = []
     for index, position in enumerate(wanted):
         mean, count = position - index * gap, 1

@@ -160,8 +160,8 @@ def _most_exceeded(rule: RuleShare) -> str:
 def profiles_table(title: str, profiles: Sequence[tuple[str, WorstProfile]]) -> Table:
     """Tabulate profiles with their responses.
 
-    `profiles` are pairs of a response, for which the profile is the worst, and the profile. The
-    name of the response may be empty.
+    Each profile is paired with the name of the response for which the profile is the worst, or with
+    "".
     """
 
     def response(name: str) -> Field:

@@ -145,6 +145,7 @@ def printed(report: Report, page_size: str = "a4", leaves: Sequence[str] | None 
     return typeset(
         (files("calm.report") / "report.typ").read_bytes(),
         {
+            # texts are passed as data, never as markup
             "report": pdf_leaf(replace(report, sections=())),
             "sections": f"[{','.join(leaves)}]",
             "paper": "us-letter" if page_size == "letter" else page_size,

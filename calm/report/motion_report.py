@@ -262,9 +262,9 @@ def motion_document(
 ) -> dict[str, Any]:
     """Return the JSON object of a motion study: factors with 95 % intervals, and depth errors [m].
 
-    The key `sensors` gives the agreement of each sensor with the estimate and, under `plain`, with
-    the line computed from currents alone. `held_out` lists withheld sensors, `read` the input
-    files.
+    `sensors` gives the agreement of each sensor with the estimate. Its key `plain` gives the
+    agreement with the line computed from currents alone. `held_out` lists withheld sensors, `read`
+    the input files.
     """
     sensors = [
         {"label": label, **_agreement_document(fit), "offset": float(offset)}

@@ -105,8 +105,9 @@ def by_speed(
 def to_document(tabulation: Tabulation) -> dict[str, Any]:
     """Return the JSON object of a table, with one object per ship speed.
 
-    Each object has `speed`, `status` and the keys of `FIGURES` (SI and degrees), with `frequency`
-    only if the cable strums. `warnings` or, without an equilibrium, `message` and `advice` follow.
+    Each object has `speed`, `status` and the keys of `FIGURES` (SI and degrees). `frequency` is
+    absent unless the cable strums. Warnings or, without an equilibrium, `message` and `advice`
+    follow.
     """
     return {
         "calm": __version__,

@@ -68,6 +68,7 @@ def figures(outcome: CaseOutcome) -> tuple[str, ...]:
     """
     case = outcome.case
     expected = f"{case.expected:.12g}"
+    # further digits are rounding errors that differ between machines
     decimals = max(0, 1 + ceil(-log10(case.tolerance)))
     decimals += len(expected.partition(".")[2]) > decimals
     return (

@@ -118,6 +118,8 @@ class BuildApp(App[int]):
         return list(dict.fromkeys([*around, *lists, *self.screen_stack[-1:], self]))
 
     def _wait_for_listeners(self, listeners: list[MessagePump]) -> None:
+        # A queue is handled in order, so the posted call runs after the key. A second round waits
+        # for messages that widgets sent to each other.
         while listeners:
             first, *others = listeners
             if first.call_later(self._wait_for_listeners, others):  # false for a removed widget
@@ -329,8 +331,9 @@ class BuildApp(App[int]):
             self.screen.settle()
 
     def save_copy_on_exit(self) -> None:
-        """Save a backup copy, unless the user has quit; note the reason for a failure in
-        `not_kept`.
+        """Save a backup copy, unless the user has quit.
+
+        If this fails, `not_kept` gives the reason.
         """
         if not self._is_left:
             self.not_kept = self.keep()

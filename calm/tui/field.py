@@ -119,6 +119,7 @@ class Field(Horizontal):
         )
 
     def compose(self) -> ComposeResult:
+        # the only widget: each widget takes time to start, and a form may have dozens of fields
         yield self.input
 
     def render(self) -> Content:

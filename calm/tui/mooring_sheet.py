@@ -237,9 +237,9 @@ class Missing:
     Attributes
     ----------
     labels : labels of the pieces and clamps concerned
-    targets : locations in the file for each missing value, by key: the definition of the component
-        if the file has one, otherwise all rows that lack the value. A part of an assembly has the
-        row of the assembly.
+    targets : locations in the file to which each missing value is written, by key. The location is
+        the definition of the component in the file. Without a definition, the locations are all
+        rows that lack the value. A part of an assembly has the row of the assembly.
     estimates : estimates for the class of component, by key, without their source
     """
 
@@ -303,8 +303,8 @@ def with_figures(
 ) -> Draft:
     """Write the entered component values to the file, and return the new draft.
 
-    `texts` are by ``component.key``; an empty text leaves a value unknown. `source` may be empty.
-    Raise EditError if the file does not allow the change.
+    The keys of `texts` are ``component.key``. An empty text leaves a value unknown. Raise EditError
+    if the file does not allow the change.
     """
     for each in missing:
         for key, targets in each.targets.items():

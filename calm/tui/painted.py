@@ -66,8 +66,9 @@ class Painted:
         self._touched.clear()
 
     def forget(self) -> None:
-        """Treat all displayed cells as unknown, because another program has written to the
-        terminal.
+        """Treat all displayed cells as unknown.
+
+        This is necessary after another program has written to the terminal.
         """
         self._shown = [[_UNKNOWN] * len(row) for row in self._shown]
         self._touched.update(range(len(self._wanted)))

@@ -127,6 +127,7 @@ class Legible(LineFilter):
 @lru_cache(4)
 def legible(dark: bool, sixteen: bool) -> Legible:
     """Return the filter for a dark or light background, always the same object."""
+    # cached, because Textual caches the filtered lines by filter
     return Legible(dark=dark, sixteen=sixteen)
 
 

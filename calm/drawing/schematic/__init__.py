@@ -1,7 +1,7 @@
 """Drawing of the parts of a line in a column, with symbols, wrapped texts and values.
 
-A schematic has one column and is not to scale; the pages of a mooring diagram have several. Lengths
-are in points (1/72 inch).
+A schematic has one column, a mooring diagram several. Drawings are not to scale. Lengths are in
+points (1/72 inch).
 """
 
 from __future__ import annotations
