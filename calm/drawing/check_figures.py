@@ -53,11 +53,8 @@ class DrawnCase:
 class Label:
     """Label of a part, next to the line.
 
-    Attributes
-    ----------
-    depth : depth as text
-    at : depth, and position to the east and north [m]; None for a cable
-    tag : mark and number of the open item on the part
+    `at` is the depth, and the position to the east and north [m]; None for a cable. `tag` is the
+    mark and number of the open item on the part.
     """
 
     part: ShownPart
@@ -226,12 +223,8 @@ def _draw_labelled_line(
 class PieceBar(NamedTuple):
     """A piece in the load chart, with its tensions and capacities in the unit of the chart.
 
-    Attributes
-    ----------
-    number : number of the piece in the line
-    tension, capacity : maximum tension, and capacity if known
-    launch, launch_capacity : tension and capacity during the launch, if known
-    judged : whether the capacity of the piece is checked
+    `launch` and `launch_capacity` are the tension and capacity during the launch. Unknown values
+    are None. `judged` is true if the capacity of the piece is checked.
     """
 
     number: int

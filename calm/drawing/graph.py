@@ -183,8 +183,8 @@ def number(value: float) -> str:
 class Stroke(NamedTuple):
     """Colour, width [pt] and dashes of a line.
 
-    `dashes` are the lengths of dashes and gaps [pt]; empty for a solid line. A `square` line
-    extends beyond its ends by half its width.
+    `dashes` are lengths of dashes and gaps [pt]; empty for a solid line. A `square` line is half
+    its width longer at each end.
     """
 
     colour: str
@@ -413,7 +413,7 @@ class Axes:
         ----------
         across, up : ticks, or approximate number of ticks at round numbers
         below, beside : axis labels, which may have several lines
-        grid : whether thin grid lines continue the ticks
+        grid : whether to draw thin grid lines
         numbered : whether the horizontal and the vertical axis have numbers
         """
         pen, size = self.graph.pen, self.graph.size
@@ -478,8 +478,8 @@ def _path(x: Floats, y: Floats) -> str:
 def draw_mark(pen: Pen, x: float, y: float, sign: str, size: float, colour: str) -> None:
     """Draw a mark of a given width [pt] at a point.
 
-    `sign` is the form of the mark: o (circle), s (square), D (diamond), v and ^ (triangles), +
-    (cross) or | (vertical line).
+    `sign` is o (circle), s (square), D (diamond), v or ^ (triangle), + (cross) or | (vertical
+    line).
     """
     half = size / 2
     if sign == "o":

@@ -1,7 +1,7 @@
 """Side view and plan of a solved line [m], independent of the output format.
 
-Other modules draw the picture: `line_drawing` for files and pages, `sketch` in a terminal, `plot`
-on matplotlib axes, and `check_figures` for a design check.
+The picture is drawn by `line_drawing` for files and pages, `sketch` in a terminal, `plot` on
+matplotlib axes, and `check_figures` for a design check.
 """
 
 from collections.abc import Iterator, Sequence
@@ -70,11 +70,10 @@ class LinePicture:
     lines : lines, from back to front
     marks : floats, instruments, releases and the anchor
     across, up : labels of the axes, with units
-    ship : position of the towing ship
-    top, bottom : depths at the edges of a side view [m]
-    height : water depth of a mooring, or height of a towed line [m]
+    top, bottom : depths at the edges of a side view
+    height : water depth of a mooring, or height of a towed line
     surface : whether there is a sea surface at depth 0
-    seabed : depth of the seabed [m]; None if not shown
+    seabed : depth of the seabed; None if not shown
     """
 
     lines: tuple[Polyline, ...]
@@ -264,7 +263,7 @@ def current_between(
 def water_past(result: AnyResult) -> tuple[Floats, Floats, Floats]:
     """Return depths, and the velocity of the water relative to the line, east and north [m/s].
 
-    The velocity is the current; for a tow, it includes the velocity due to the motion of the ship.
+    The velocity is the current, minus the velocity of the ship for a tow.
     """
     water, tow = result.water, result.file.tow
     if tow is None:
@@ -302,8 +301,8 @@ def named_parts(result: AnyResult) -> list[PictureMark]:
 def names(parts: list[PictureMark], near: float) -> list[tuple[str, PictureMark]]:
     """Return the names to write in a drawing, each with its part.
 
-    Adjacent parts of the same component share a name, such as ``glass 1–6``, if their labels differ
-    only by a number. Their depths must differ by at most `near` [m].
+    Adjacent parts of the same component, at most `near` [m] apart in depth, share a name such as
+    ``glass 1–6``.
     """
     runs: list[list[PictureMark]] = []
     for part in parts:
@@ -330,13 +329,8 @@ def together(labels: list[str]) -> str:
 def spread(wanted: list[float], gap: float, start: float, end: float) -> list[float]:
     """Shift positions as little as possible, to obtain a minimum distance between positions.
 
-    The sum of the squared shifts is minimal.
-
-    Parameters
-    ----------
-    wanted : positions in ascending order
-    gap : minimum distance
-    start, end : range of the new positions, which extend beyond `end` without enough room
+    The sum of the squared shifts is minimal. `wanted` is in ascending order. The new positions are
+    from `start` to `end`, but extend beyond `end` if there is not enough room.
     """
     # isotonic regression of the positions without the gaps
     pools: list[tuple[float, int]] = []

@@ -26,7 +26,6 @@ def summary_document(summary: Summary) -> dict[str, Any]:
 
     - `components`, `clamps`: distributions of values
     - `rules`, `limits`: frequency of violations
-    - `limits_used`: limits that the rules apply
     - `responses`: exceedance curves and return levels of the line as a whole
     """
 

@@ -20,12 +20,12 @@ class Column:
 
     Attributes
     ----------
-    heading, unit : title, and unit below the title
+    unit : unit below the title
     share : weight in the division of the page width: 0 for short words, 1 for names, more for
         sentences
-    short : shorter title for narrow tables; it may have several lines
+    short : shorter title for narrow tables, perhaps of several lines
     narrow : whether narrow tables include the column
-    marked : whether cells may carry a mark for values near or beyond a limit
+    marked : whether cells may mark values near or beyond a limit
     """
 
     heading: str
@@ -72,12 +72,11 @@ class Table:
 
     Attributes
     ----------
-    note : text below the table
     totals : number of rows at the end that are sums
     sortable : whether readers can sort and filter the rows
     dense : whether the columns are closely spaced
     by_hand : whether the table is filled in by hand
-    aside : smaller text next to the title
+    note, aside : text below the table, and smaller text next to the title
     ruled : whether there is a line below each row
     """
 
@@ -277,11 +276,7 @@ class ReportPart:
 class Running:
     """Running header and footer of every page.
 
-    Attributes
-    ----------
-    document, title : left side of the header
-    verdict, date : right side of the header
-    foot : left side of the footer
+    `document` and `title` are on the left side of the header, `verdict` and `date` on the right.
     """
 
     document: str = ""
@@ -379,11 +374,8 @@ def blank(heading: str, unit: str = "", share: float = 1.0) -> Field:
 def quantity(name: str | Quantity, show: Shown = "", heading: str | None = None) -> Field:
     """Create a column of a quantity for `table_of`, in display units.
 
-    Parameters
-    ----------
-    show : source of the value [SI, degrees], as in `words`; by default, the attribute with the name
-        of the quantity
-    heading : heading of the column, instead of the usual heading of the quantity
+    `show` gives the value [SI, degrees] as in `words`; by default, the attribute named like the
+    quantity. `heading` replaces the usual heading.
     """
     shown = QUANTITIES[name] if isinstance(name, str) else name
     value = _getter(show, shown.name)
@@ -429,9 +421,9 @@ def table_of(
 
     Parameters
     ----------
-    items : items to tabulate; a `Cell` among the items is a heading for the following rows
+    items : items to tabulate; a `Cell` is a heading for the following rows
     fields : columns created by `words`, `number` and `quantity`
-    sums : items of the total rows at the end of the table
+    sums : items of the total rows at the end
     """
     totals = list(sums)
     rows = (

@@ -2,11 +2,9 @@
 
 The main curve is graduated in the angle φ and the arc length s′. A cable is the part of the main
 curve from a lower end A to an upper end B. Each point P = (y′ of A, z′ of B) stands for one cable.
-Families of curves connect points with equal L/H, D/H or T_A/(wH). L is the length of the cable, D
-and H are the horizontal and vertical distances from A to B. T_A is the tension at A, and w the
-weight per metre.
-
-The module also reports the cables for three given quantities.
+Further curves connect points with equal L/H, D/H or T_A/(wH). L is the length of the cable, D and H
+are the horizontal and vertical distances from A to B. T_A is the tension at A, and w the weight per
+metre.
 """
 
 from __future__ import annotations

@@ -72,15 +72,12 @@ def check_document(assessments: Sequence[Assessment], *, every: bool = False) ->
     keys are:
 
     - `estimated`: number of findings based on estimates
-    - `findings`, `findings_in_all`: findings listed by `listed_findings`, and number of all
-      findings
-    - `situations`: solved situations in each environment
+    - `findings`, `findings_in_all`: listed findings, and number of all findings
     - `key_figures`: values of page one
     - `launch`, `recovery`: deployment, and ascent after release
     - `backup`, `losses`: net buoyancy after breaks, and after the loss of a float
-    - `inventory`, `totals`: pieces and clamps, and their totals
 
-    If `every` is true, all findings are listed.
+    `findings` are those of `listed_findings`, or all if `every` is true.
     """
 
     def by_name(value_of: Callable[[Assessment], Any]) -> dict[str, Any]:

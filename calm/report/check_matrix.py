@@ -65,7 +65,6 @@ class SummaryRow:
     handling : cell for launch, recovery and breaks
     governs : check with the largest utilisation in the first environment
     accepted, findings : numbers of accepted findings and of all findings
-    conclusion : verdict
     """
 
     mooring: str

@@ -30,8 +30,7 @@ def deck_csvs(deck: Deck) -> dict[str, str]:
 def deck_workbook(deck: Deck) -> bytes:
     """Write the sheets into one Excel workbook that is ready to print, with units in the headings.
 
-    Texts that begin with a formula symbol stay texts. The date of the workbook comes from
-    `provenance.moment`.
+    Texts are never formulas. The date of the workbook comes from `provenance.moment`.
     """
     from xlsxwriter import Workbook
 

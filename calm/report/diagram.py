@@ -67,8 +67,7 @@ class PageSize(StrEnum):
 class _PageColumn:
     """A column of the diagram, with the parts of one leg of a net or of a single line.
 
-    `above` and `below` are the texts at the connections to other columns; None if there is no
-    connection.
+    `above` and `below` are the texts at connections to other columns, or None.
     """
 
     parts: tuple[PlacedPart, ...]

@@ -52,8 +52,8 @@ class LoadCase:
     Attributes
     ----------
     code : code of the load case in findings, such as 1s
-    results : one result, or a result for each leg of a net; empty if there is no equilibrium
-    failure : reason why there is no equilibrium; None if there is one
+    results : result of each leg of a net or of the single line; empty without equilibrium
+    failure : reason why there is no equilibrium, or None
     """
 
     code: str
@@ -194,8 +194,8 @@ class PieceEnvelope:
     row : results for the piece in the first load case
     tension, case : maximum tension [N], and the code of its load case
     least, tilt : minimum tension [N] and maximum tilt [degrees]
-    moored, launch : strength finding in equilibrium, and during launch, if any
-    launch_tension, rise_tension : maximum tension during launch and ascent [N], if known
+    moored, launch : strength finding in equilibrium, and during launch
+    launch_tension, rise_tension : maximum tension during launch and ascent [N]
     """
 
     number: int

@@ -50,11 +50,8 @@ def motion_report(
 ) -> blocks.Report:
     """Build the report of a motion study, beginning with one page on the whole deployment.
 
-    Parameters
-    ----------
-    series : depths of the sensors and of other instruments over time
-    time : (n,) times of the record
-    cards : summary card of each input file
+    `series` are the depths of the sensors and of other instruments over time, `time` the (n,)
+    times. `cards` summarise the input files.
     """
     bare = [one for one in series if not np.isfinite(one.measured).any()]
     sensors = [one for one in series if np.isfinite(one.measured).any()]
@@ -379,7 +376,7 @@ def _draw_depths(
 def false_figure(time: Any, false: Mapping[str, Any]) -> str:
     """Draw a row of marks for each current level, at the times of apparently false currents.
 
-    `time` are the (n,) times of the record, `false` the times with a false current by level.
+    `time` are the (n,) times of the record; `false` has times by level.
     """
     names = list(false)
     left = min(max(text_width(name, _SIZE) for name in names) + 12.0, 0.4 * _WIDTH)

@@ -300,7 +300,7 @@ def _capitalised(text: str) -> str:
 def draft(assessment: Assessment) -> bool:
     """Return whether a report is a draft, which must not be signed.
 
-    A draft lacks a number, revision or date, or relies on an acceptance copied from an example.
+    A draft lacks a number, revision or date, or relies on an acceptance from an example.
     """
     document = assessment.file.document
     given = document is not None and all((document.id, document.revision, document.date))

@@ -236,8 +236,8 @@ def position_text(position: Position) -> str:
 def degrees_text(degrees: float, sides: str, digits: int) -> str:
     """Format a latitude or longitude in whole degrees and in minutes to a thousandth.
 
-    `sides` are the letters for positive and negative angles. `digits` is the minimum number of
-    digits of the degrees.
+    `sides` are the letters for positive and negative angles. The degrees have at least `digits`
+    digits.
     """
     whole, minutes = divmod(round(abs(degrees) * 60_000), 60_000)
     return f"{whole:0{digits}d}° {minutes / 1000:06.3f}′ {sides[degrees < 0.0]}"

@@ -37,9 +37,9 @@ def header() -> tuple[str, ...]:
 def to_csv(results: Sequence[Result]) -> str:
     """Write the components of one or several moorings or tows as CSV text.
 
-    The text is comma-separated, with decimal points and LF. The row of a clamped instrument follows
-    the row of its piece. Such a row has equal values for the upper and the lower end, and no
-    length. Unknown numbers are empty. With a net, the last column names the leg of the net.
+    The row of a clamped instrument follows the row of its piece. Such a row has equal values for
+    the upper and the lower end, and no length. Unknown numbers are empty. With a net, the last
+    column names the leg of the net. Lines end in LF.
     """
     rows = [row for result in results for row in _rows(result)]
     more = shown_in(OF_ROWS, Output.CSV)

@@ -1,6 +1,6 @@
 """Text report of a result: a summary, and a table of the line that marks values near limits.
 
-The report of a net has tables of the legs, the nodes and the end loads.
+For a net, there are tables of legs, nodes and end loads.
 """
 
 import math
@@ -278,8 +278,8 @@ def tilt_state(component: Component, tilt: float) -> State | None:
 def safety_state(result: AnyResult, record: ComponentRow) -> State | None:
     """Return FAIL if the safety factor is too small or the working load is exceeded, else None.
 
-    The required factor depends on `checks.safety_factor`, the material and the type of mooring. The
-    working load of a synthetic rope counts only if its breaking load is unknown. An unknown safety
+    The required factor depends on `checks.safety_factor`, material and type of mooring. For a
+    synthetic rope, the working load counts only if the breaking load is unknown. An unknown safety
     factor (NaN) is not a failure.
     """
     # the intended purpose of a single leg is irrelevant if the whole net is shown

@@ -144,8 +144,8 @@ def _row_document(tabulation: Tabulation, row: TabulationRow) -> dict[str, Any]:
 def tabulation_part(tabulation: Tabulation) -> ReportPart:
     """Build the table with one row per speed, within 80 columns.
 
-    Rows without an equilibrium show the status of the solver. Warnings common to all rows follow
-    the table; rows with other warnings have a mark.
+    Rows without an equilibrium show the status of the solver. Common warnings follow the table;
+    other warnings give a mark in their row.
     """
     speed = QUANTITIES["speed"]
     names = [name for name in FIGURES if name != "frequency" or tabulation.strumming]
@@ -198,8 +198,7 @@ _CURVE, _AT_BODY = Stroke(LINE_COLOUR, 1.4), Stroke(LINE_COLOUR, 1.2, (4.0, 2.0)
 def sweep_drawing(tabulation: Tabulation) -> str:
     """Draw body depth, layback and tensions against ship speed, as SVG.
 
-    The tensions are at the tow point and at the body. Speeds without an equilibrium leave gaps in
-    the curves.
+    Tensions are at the tow point and at the body. Without an equilibrium, curves have gaps.
     """
     page = Graph(_WIDTH, _HEIGHT, tabulation.name, _SIZE)
     title = shortened(tabulation.name, _WIDTH - 12.0, 11.0, bold=True)

@@ -143,12 +143,8 @@ _TITLES = {
 class CataloguePane(Vertical):
     """Pane with a search field, the components found, and the card of the chosen component.
 
-    The pane also asks for the length of a new cable and the position of a new clamp.
-
-    Parameters
-    ----------
-    take : function that receives the purpose of the search, and the keys of the row
-    close : function that returns to the line
+    The pane also asks for the length of a new cable and the position of a new clamp. `take`
+    receives the purpose of the search and the keys of the row; `close` returns to the line.
     """
 
     BINDINGS = key_table.bindings("catalogue")
@@ -214,12 +210,8 @@ class CataloguePane(Vertical):
         """Open the search for a component, with favourites first.
 
         Until the user types, components with the given role, recent components and components of
-        the line follow.
-
-        Parameters
-        ----------
-        target : name of the row next to which the component is added
-        clampable : whether to list only components that can be clamped on
+        the line follow. `target` is the name of the row next to which the component is added.
+        `clampable` limits the list to components that can be clamped on.
         """
         self.purpose, self.clampable, self._role = purpose, clampable, role
         self.retitle(target)

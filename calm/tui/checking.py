@@ -23,7 +23,7 @@ class Reading:
     text : text to write, with a missing unit added
     complaint : reason why the text is invalid, if any
     offer : corrected text, if known
-    explained : meaning of a valid text; empty if obvious
+    explained : meaning of a valid text, unless obvious
     """
 
     text: str
@@ -162,9 +162,8 @@ def distance(before: str = "") -> Check:
 def length(before: str = "", *, towed: bool = False) -> Check:
     """Return a check for the length of a piece.
 
-    Valid texts are a length, a length under load (``98 m at 2 kN``), or ``fit`` with the required
-    depth of the top. For a towed line, ``fit`` takes the depth of the lower end. A bare number gets
-    the unit of `before`.
+    Valid texts are a length, a length under load (``98 m at 2 kN``), or ``fit`` with the depth of
+    the top (of the lower end if `towed`). A bare number gets the unit of `before`.
     """
     plain = quantity(POSITIVE_LENGTH, usual_unit=unit_of(before))
     depth = quantity(QuantityField("length") if towed else LENGTH, usual_unit=unit_of(before))

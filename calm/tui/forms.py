@@ -46,7 +46,7 @@ class FormField:
     key : name of the field, or path of the edited key of the file, such as `position.latitude`
     takes : description shown next to the field
     above : heading of a group that begins with this field
-    columns : columns if the field is a table, with its rows in `text`
+    columns : columns of a table, whose rows are in `text`
     is_needed : whether the model requires this key
     """
 

@@ -27,8 +27,8 @@ class Action:
     place : widget or screen in which the keys work
     name : name of the method, without ``action_``, with its arguments
     keys : keys in Textual's notation, separated by commas; the first is displayed
-    title, meaning : short name for palette and key bar, and sentence for the help
-    hint : rank in the key bar, from 0; None if the key bar does not show the action
+    title, meaning : short name, and sentence for the help
+    hint : rank in the key bar, from 0; None if not in the key bar
     palette : whether the command palette may list the action
     """
 

@@ -196,13 +196,8 @@ LEAD = 4
 class TableRow:
     """Displayed row of a piece or a clamp.
 
-    Attributes
-    ----------
-    spot : position in the line
-    sign : symbol for the role of the component
-    texts : text of each cell, by column name
-    state : most severe state of the findings
-    wrong : whether the component is unknown
+    `spot` is the position in the line, `sign` the symbol for the role. `texts` are by column name.
+    `state` is the most severe state of the findings. `wrong` is true if the component is unknown.
     """
 
     spot: Place

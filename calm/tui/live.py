@@ -59,10 +59,10 @@ class View:
     environments : names of the environments besides the default environment
     rows : results of each piece and clamp in file order; clamps follow their piece
     complete : whether `findings` has all findings of `calm check`; true for a solved tow
-    cases : results in each environment; empty before the full check
+    cases : results in each environment, after the full check
     elsewhere : mistakes in other environments
-    held : for a line without an anchor, solutions in every environment and situation
-    memory : previous solutions, which are reused for the next text
+    held : solutions in every environment and situation, for a line without an anchor
+    memory : previous solutions, for reuse
     """
 
     text: str

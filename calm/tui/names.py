@@ -138,9 +138,7 @@ def with_extended_acceptances(draft: Draft, named: Iterable[Named]) -> Draft:
 class EnvironmentChoice:
     """Environment chosen for a line: the default, a named environment, or an environment file.
 
-    Parameters
-    ----------
-    environment : name of an environment, or an environment file; None for the default
+    `environment` is a name or a file; None for the default.
     """
 
     def __init__(self, history: History, environment: str | None) -> None:

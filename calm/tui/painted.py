@@ -137,8 +137,8 @@ class Painted:
 class Pace:
     """Flow control that delays each frame until the terminal has displayed the previous frame.
 
-    Each frame ends with a request for the cursor position, which the terminal answers once the
-    frame is displayed. Frames do not wait for a terminal that has never answered.
+    The terminal answers a request at the end of each frame. Frames do not wait for a terminal that
+    has never answered.
     """
 
     def __init__(self) -> None:

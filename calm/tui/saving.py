@@ -29,13 +29,8 @@ _READ_AGAIN = "Reloaded: the file was changed by another program"
 class Saving:
     """Saver of the file of a workspace, which detects changes by other programs.
 
-    The user is asked before a file is overwritten.
-
-    Parameters
-    ----------
-    app : application on whose screen questions appear
-    show_replaced_draft : function that shows a text that has replaced the draft, with a message
-    leave : function that ends the application
+    Questions appear on the screen of `app`. `show_replaced_draft` shows a new text and a message.
+    `leave` ends the application.
     """
 
     def __init__(

@@ -29,9 +29,8 @@ def open_session(
 ) -> tuple[Session, KeptWork | None]:
     """Open a session for a file, and return it with any unsaved work of an earlier session.
 
-    The file need not exist yet; `path` is None for an unnamed file. Raise InputError or UsageError
-    if a file cannot be read, the folder of a new file does not exist, or the environment is
-    unknown.
+    The file need not exist; `path` is None for an unnamed file. Raise InputError or UsageError if a
+    file cannot be read, a folder is missing, or the environment is unknown.
     """
     file = WorkingFile(path)
     if path is not None and file.stamp is not None:

@@ -27,7 +27,6 @@ class VerdictLine:
 
     Attributes
     ----------
-    heading : heading in front of the text; may be empty
     state : state that determines the symbol and the colour, or None
     faint : whether the text is dimmed
     pending : whether the state may still change

@@ -212,8 +212,8 @@ _ACCEPT_HINT = "Enter accepts"
 class FormChoice(Cycle):
     """Selector of the form in which a water property is given.
 
-    The arrows show other forms, and Enter accepts the form shown. Leaving without Enter restores
-    the form in the draft.
+    The arrows show other forms, and Enter accepts. Leaving without Enter restores the form in the
+    draft.
     """
 
     BINDINGS = key_table.bindings("given")

@@ -77,13 +77,13 @@ def imported(path: Path, time: str, depth: float) -> tuple[Sequence[str], Sequen
     Parameters
     ----------
     path : CSV, NetCDF or zarr file
-    time : time of the profile, in ISO 8601 format; empty if the file has a single profile
+    time : time of the profile, in ISO 8601 format; empty for a single profile
     depth : water depth [m]
 
     Returns
     -------
     columns : depth [m], and either speed [m/s] and direction [degrees] or velocities [m/s],
-        whichever needs fewer digits; always velocities if there is an upward velocity
+        whichever needs fewer digits; always velocities if one is upward
     rows : one row for each level, from the top, with all digits of the file
 
     Raises

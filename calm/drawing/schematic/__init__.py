@@ -52,8 +52,8 @@ def schematic_svg(file: MooringFile, result: AnyResult | None = None) -> str:
     references, identifiers or style sheets. Texts are never cut. The same line always gives the
     same picture.
 
-    Without a result, depths are those of the upright, unstretched line. For a tow or a line with a
-    float at the surface, such depths are unknown.
+    Without a result, depths are those of the upright, unstretched line, and unknown if the line is
+    towed or reaches the surface.
     """
     (drawn,) = _draw_sheets(schematic_of(file, result), inf)
     return drawn
@@ -246,8 +246,8 @@ def measured(
 ) -> list[PlacedPart]:
     """Compute the height of each part; the parts are not placed yet.
 
-    The height of a cable with its clamps grows with the logarithm of its length. `growth`
-    multiplies the growth rate.
+    The height of a cable grows with the logarithm of its length, at a rate that is multiplied by
+    `growth`.
     """
     found = [_measured(part, column) for part in parts]
     for number, one in enumerate(found):

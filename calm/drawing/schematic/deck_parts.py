@@ -26,8 +26,8 @@ def parts_of_deck(
 ) -> tuple[ShownPart, ...]:
     """Convert the listed items of a line or leg of a net to parts with values.
 
-    Planned depths are among the values if any part has one. `surface` is true if the top of the
-    line floats at the surface.
+    Planned depths are included if any part has one. `surface` is true if the line reaches the
+    surface.
     """
     weights = {one.label: one.wet_weight for one in deck.assessment.inventory}
     cells = partial(_values, deck.numbers, weights=weights, planned=has_plans(deck))
@@ -50,7 +50,7 @@ def parts_of(
     ----------
     every : all items of the line, with labels chosen by the user
     cells : function that returns the values next to a part
-    surface : whether the top of the line floats at the surface
+    surface : whether the line reaches the surface
     """
     own = _chosen_labels(every)
     codes = {one.serial: " · ".join(one.code_lines) for one in file.releases}

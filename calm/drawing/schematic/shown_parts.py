@@ -39,7 +39,7 @@ class ShownPart:
     ----------
     sign : symbol to draw, with the number of the floats on a chain or cable
     rows : rows of text: two for a pair of releases, otherwise one
-    labels : labels of the pieces that the part represents
+    labels : labels of the pieces in the part
     cable : symbol of the cable that the part is or is clamped on; None for a rigid part
     length : length of a cable [m], NaN if unknown
     clamped : whether the part is clamped on the part above it

@@ -184,7 +184,7 @@ def tension(result: LegResult, width: int, height: int) -> list[Text]:
     """Draw the tension against the distance along the line from its top.
 
     A red dotted line shows the working load, or the breaking load divided by the required safety
-    factor. Loads much larger than the tension are omitted.
+    factor. Loads far above the tension are omitted.
     """
     pulls, along = result.shape.tension, along_the_line(result.shape)
     if result.towed:  # pieces are listed from the ship down, while the shape begins at the body

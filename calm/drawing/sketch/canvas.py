@@ -232,7 +232,7 @@ def scaled_frame(
     size : numbers of columns and rows of the canvas
     caption : text above the frame, omitted if the canvas has too few rows
     across, down : values at the left and right edge, and at the upper and lower edge
-    units : alternative texts for the unit of the horizontal scale (see `PlotFrame.scale_across`)
+    units : alternative units of the horizontal scale (see `PlotFrame.scale_across`)
     seabed : depth of the seabed below the frame [m], if any
     margin : number of free columns on the right
     per_tick : number of columns per horizontal number
