@@ -51,10 +51,10 @@ class DrawnCase:
 
 @dataclass(frozen=True)
 class Label:
-    """A label next to the line, with its part, its text, and the depth as text.
+    """Label of a part, next to the line.
 
-    `at` is the depth of the part and its position to the east and north [m]; None for a cable.
-    `tag` is the mark and the number of the open item on this part.
+    `at` is the depth, and the position to the east and north [m]; None for a cable. `tag` is the
+    mark and number of the open item on the part.
     """
 
     part: ShownPart
@@ -78,18 +78,10 @@ def grey(svg: str) -> str:
 def elevation(
     title: str, cases: Sequence[DrawnCase], labels: Sequence[Label], size: tuple[float, float]
 ) -> tuple[str, float]:
-    """Draw the elevation of the mooring as SVG; also return the scale of both axes [m per point].
+    """Draw the elevation of the mooring as SVG; also return the scale of the axes [m per point].
 
-    The first case is a thick solid line, still water is dashed, strumming cables are dotted, and
-    other cases are thin lines. The current of the first case is drawn on the left. The labels and
-    their symbols are on the right, from the top down. If a wide mooring leaves no space for labels,
-    only the positions of the parts are marked.
-
-    Parameters
-    ----------
-    cases : load cases, all drawn in the vertical plane of the first case
-    labels : labels, from the top down
-    size : width and height of the drawing
+    The load cases are in the vertical plane of the first load case, which is a thick line. Labels,
+    from the top down, are on the right. A wide mooring without space for labels has only marks.
     """
     width, height = size
     page = picture(width, height, title)
@@ -231,12 +223,8 @@ def _draw_labelled_line(
 class PieceBar(NamedTuple):
     """A piece in the load chart, with its tensions and capacities in the unit of the chart.
 
-    Attributes
-    ----------
-    number : number of the piece in the line
-    tension, capacity : maximum tension, and capacity; an unknown capacity is None
-    launch, launch_capacity : maximum tension and capacity during the launch; None if unknown
-    judged : whether the capacity of the piece is checked
+    `launch` and `launch_capacity` are the tension and capacity during the launch. Unknown values
+    are None. `judged` is true if the capacity of the piece is checked.
     """
 
     number: int

@@ -1,6 +1,6 @@
 """Graphs as SVG: scales, axes and legends.
 
-Lengths are in points (1/72 inch); the upper left corner of a graph is its origin.
+Lengths are in points (1/72 inch). The origin is the upper left corner of the graph.
 """
 
 from __future__ import annotations
@@ -26,13 +26,10 @@ _MARGIN = 0.05  # share of the range, on either side
 
 @dataclass(frozen=True)
 class Scale:
-    """A linear or logarithmic range of values.
+    """A linear or logarithmic range of values along an axis.
 
-    Attributes
-    ----------
-    low : value at the left or the lower edge; may be larger than `high`
-    high : value at the right or the upper edge
-    logarithmic : whether the scale is logarithmic; `low` and `high` are then positive
+    `low` is the value at the left or lower edge, and may be larger than `high`. On a logarithmic
+    scale, `low` and `high` are positive.
     """
 
     low: float
@@ -109,10 +106,7 @@ def numbers(low: float, high: float, most: int) -> list[Tick]:
 
 
 def counts(first: int, last: int, most: int) -> list[Tick]:
-    """Return about `most` ticks or fewer at whole numbers from `first` to `last`.
-
-    The steps between the ticks are equal, round numbers.
-    """
+    """Return ticks at whole numbers from `first` to `last`, in at most `most` equal round steps."""
     wanted = max((last - first) / max(most, 1), 1.0)
     power = 10 ** floor(log10(wanted))
     step = next(int(each) * power for each in _STEPS if each * power >= wanted)
@@ -128,7 +122,10 @@ def decades(low: float, high: float) -> list[Tick]:
 
 
 def moments(begin: np.datetime64, end: np.datetime64, most: int) -> list[Tick]:
-    """Return about `most` ticks or fewer at round times, with values in seconds since 1970."""
+    """Return ticks at round times, with values in seconds since 1970.
+
+    `most` is the approximate maximum number of ticks.
+    """
     edges = np.array([begin, end])
     first, last = seconds(edges)
     wanted = (last - first) / max(most, 1)
@@ -186,8 +183,8 @@ def number(value: float) -> str:
 class Stroke(NamedTuple):
     """Colour, width [pt] and dashes of a line.
 
-    `dashes` are the lengths of dashes and gaps [pt]; empty for a solid line. A `square` line
-    extends beyond both ends by half its width, so that even the shortest line is visible.
+    `dashes` are lengths of dashes and gaps [pt]; empty for a solid line. A `square` line is half
+    its width longer at each end.
     """
 
     colour: str
@@ -196,7 +193,7 @@ class Stroke(NamedTuple):
     square: bool = False
 
     def attributes(self) -> dict[str, float | str]:
-        """Return the attributes that give this stroke to an SVG element."""
+        """Return the SVG attributes of a line with this stroke."""
         written: dict[str, float | str] = {"stroke": self.colour, "stroke_width": self.width}
         if self.dashes:
             written["stroke_dasharray"] = " ".join(f"{each:g}" for each in self.dashes)
@@ -243,13 +240,10 @@ class Graph:
         *,
         clipped: bool = False,
     ) -> Axes:
-        """Add axes to the graph.
+        """Add axes to the graph, with position and size in points.
 
-        Parameters
-        ----------
-        left, top, width, height : position and size of the axes on the graph [pt]
-        across, up : scale from left to right, and scale from bottom to top
-        clipped : whether lines are clipped at the frame
+        `across` and `up` are the horizontal and the vertical scale. If `clipped` is true, lines end
+        at the frame.
         """
         return Axes(self, (left, top, width, height), across, up, clipped)
 
@@ -418,8 +412,8 @@ class Axes:
         Parameters
         ----------
         across, up : ticks, or approximate number of ticks at round numbers
-        below, beside : labels of the horizontal and the vertical axis; line feeds separate lines
-        grid : whether thin lines continue the ticks behind the drawing
+        below, beside : axis labels, which may have several lines
+        grid : whether to draw thin grid lines
         numbered : whether the horizontal and the vertical axis have numbers
         """
         pen, size = self.graph.pen, self.graph.size
@@ -482,10 +476,10 @@ def _path(x: Floats, y: Floats) -> str:
 
 
 def draw_mark(pen: Pen, x: float, y: float, sign: str, size: float, colour: str) -> None:
-    """Draw a mark of width `size` [pt] at a point.
+    """Draw a mark of a given width [pt] at a point.
 
-    `sign` is the form of the mark. Filled marks are o (circle), s (square), D (diamond), and v and
-    ^ (triangles). Line marks are + (cross) and | (vertical line).
+    `sign` is o (circle), s (square), D (diamond), v or ^ (triangle), + (cross) or | (vertical
+    line).
     """
     half = size / 2
     if sign == "o":

@@ -58,12 +58,9 @@ _FASTER, _IN_PLANE = Stroke(WATER_COLOUR, 1.4), Stroke(WATER_COLOUR, 1.0, (3.0, 
 def line_drawing(result: AnyResult, uncertain: Uncertain | None = None) -> str:
     """Draw a mooring, a net or a tow from the side and from above, as SVG.
 
-    The elevation of a mooring is in the vertical plane through its anchor and its free end. The
-    elevation of a net is in the plane in which the net is widest. The elevation of a tow is in the
-    vertical plane of the tow direction, with the ship at distance 0. The line in still water is
-    dashed, and the uncertainty of a mooring is shown as a band behind the line. A second graph
-    shows the speed of the water past the line, and its component in the plane of the elevation. The
-    plan is omitted if the line of a tow stays in this plane.
+    The side view is in the plane of `line_picture.plane_of`. The line in still water is dashed. A
+    band behind the line shows the uncertainty of a mooring. A second graph shows the speed of the
+    water past the line. There is no plan of a tow that stays in the plane of the side view.
     """
     plane = line_picture.plane_of(result)
     side = line_picture.elevation_of(result, uncertain=uncertain)
@@ -213,11 +210,8 @@ def draw_flow(
 ) -> None:
     """Draw current speed against depth and, if different, its component in a vertical plane.
 
-    Parameters
-    ----------
-    flow : depths (n,) [m], and velocities (n,) to the east and to the north [m/s]
-    plane : (2,) direction of the plane, east and north
-    what : words that follow "speed" in the label of the scale
+    `flow` is depths (n,) [m], and velocities (n,) to the east and north [m/s]. `plane` is the (2,)
+    direction of the plane, east and north. `what` follows "speed" in the axis label.
     """
     depth, u, v = flow
     speed, in_plane = np.hypot(u, v), along(u, v, plane)

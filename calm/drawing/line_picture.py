@@ -1,8 +1,7 @@
 """Side view and plan of a solved line [m], independent of the output format.
 
-`calm.drawing.line_drawing` draws the picture for files and pages, `calm.drawing.sketch` draws it in
-a terminal, and `calm.drawing.plot` on matplotlib axes. `calm.drawing.check_figures` combines it
-with the figures of a design check.
+The picture is drawn by `line_drawing` for files and pages, `sketch` in a terminal, `plot` on
+matplotlib axes, and `check_figures` for a design check.
 """
 
 from collections.abc import Iterator, Sequence
@@ -51,8 +50,7 @@ class Polyline:
 class PictureMark:
     """A marked point of the line: component id, name, role and depth [m] of a part.
 
-    `x` and `y` are coordinates in the picture [m]. In the marks from `named_parts`, `x` and `y` are
-    distances to the east and north [m].
+    `x` and `y` are picture coordinates [m]; in `named_parts`, distances east and north [m].
     """
 
     use: str
@@ -65,18 +63,17 @@ class PictureMark:
 
 @dataclass(frozen=True)
 class LinePicture:
-    """A picture of a line.
+    """A picture of a line, with coordinates in metres.
 
     Attributes
     ----------
-    lines : lines in drawing order, from back to front
+    lines : lines, from back to front
     marks : floats, instruments, releases and the anchor
-    top, bottom : depths at the upper and lower edge of a side view, with margins [m]
-    height : water depth of a mooring, or height of a towed line [m]
-    surface : whether there is a sea surface at depth 0
-    seabed : depth of the seabed [m]; None if the seabed is not in the picture
-    ship : position of the towing ship
     across, up : labels of the axes, with units
+    top, bottom : depths at the edges of a side view
+    height : water depth of a mooring, or height of a towed line
+    surface : whether there is a sea surface at depth 0
+    seabed : depth of the seabed; None if not shown
     """
 
     lines: tuple[Polyline, ...]
@@ -103,10 +100,7 @@ def elevation_of(
 ) -> LinePicture:
     """Return the side view of a line, in the vertical plane of its excursion or of the tow.
 
-    Parameters
-    ----------
-    overlays : shapes of the mooring in other environments, or of other designs
-    uncertain : uncertainty of a mooring, which is shown as a band from 5 to 95 %
+    `overlays` are other shapes to compare. `uncertain` is shown as a band from 5 to 95 %.
     """
     plane, depth = plane_of(result), QUANTITIES["depth"].label
     marks = tuple(
@@ -156,12 +150,9 @@ def plan_of(result: AnyResult, overlays: Sequence[Shape] = ()) -> LinePicture:
 def from_the_side(
     shape: Shape, plane: Floats, kind: LineKind = LineKind.LINE, label: str = ""
 ) -> Polyline:
-    """Project a shape onto a vertical plane; return the line of distances in the plane and depths.
+    """Project the shape of a line onto a vertical plane, as distances in the plane and depths.
 
-    Parameters
-    ----------
-    plane : (2,) direction of the plane, east and north
-    kind, label : kind of the line in the picture, and text for this line in a legend
+    `plane` is the (2,) direction of the plane, east and north.
     """
     return Polyline(kind, along(shape.x, shape.y, plane), shape.depth, label)
 
@@ -195,8 +186,9 @@ def _uncertainty_band(uncertain: Uncertain) -> Polyline:
 def plane_of(result: AnyResult) -> Floats:
     """Return the horizontal direction (east, north) of the side view.
 
-    The direction is from the anchor to the free end of a mooring (east for an upright mooring),
-    along the largest extent of a net, or backward from the ship of a tow.
+    - Mooring: from the anchor to the free end, or east if upright
+    - Net: along the largest extent
+    - Tow: backward from the ship
     """
     return plane_of_legs(result.legs)
 
@@ -237,7 +229,7 @@ def levels_of(result: AnyResult) -> tuple[float, float]:
 def seabed_of(result: AnyResult) -> float:
     """Return the depth of the deepest seabed in the picture [m].
 
-    This seabed is at an anchor, or at the end of a slope that is drawn.
+    The deepest seabed is at an anchor, or at the end of a slope.
     """
     beds = (float(bed.y.max()) for bed in _seabeds(result))
     return max(*(float(one.water.depth) for one in (result, *result.legs)), *beds)
@@ -259,13 +251,8 @@ def current_between(
 ) -> tuple[Floats, Floats, Floats]:
     """Return depths, and the current to the east and north at these depths [m/s].
 
-    All levels of the current profile are included.
-
-    Parameters
-    ----------
-    water : water with the current
-    top, bottom : range of depths [m]
-    samples : minimum number of depths
+    The depths are at least `samples` depths from `top` to `bottom` [m], and all levels of the
+    current profile between.
     """
     depth = np.union1d(np.linspace(top, bottom, samples), water.level)
     depth = depth[(depth >= top) & (depth <= bottom)]
@@ -276,8 +263,7 @@ def current_between(
 def water_past(result: AnyResult) -> tuple[Floats, Floats, Floats]:
     """Return depths, and the velocity of the water relative to the line, east and north [m/s].
 
-    For a mooring or a net, this velocity is the current. For a tow, the velocity due to the motion
-    of the ship is added.
+    The velocity is the current, minus the velocity of the ship for a tow.
     """
     water, tow = result.water, result.file.tow
     if tow is None:
@@ -315,8 +301,8 @@ def named_parts(result: AnyResult) -> list[PictureMark]:
 def names(parts: list[PictureMark], near: float) -> list[tuple[str, PictureMark]]:
     """Return the names to write in a drawing, each with its part.
 
-    Adjacent parts of the same component share a name, such as ``glass 1–6``, if their labels differ
-    only by a number at the end and the parts are at most `near` [m] apart in depth.
+    Adjacent parts of the same component, at most `near` [m] apart in depth, share a name such as
+    ``glass 1–6``.
     """
     runs: list[list[PictureMark]] = []
     for part in parts:
@@ -341,13 +327,12 @@ def together(labels: list[str]) -> str:
 
 
 def spread(wanted: list[float], gap: float, start: float, end: float) -> list[float]:
-    """Shift positions so that they are at least `gap` apart, but as little as possible.
+    """Shift positions as little as possible, to obtain a minimum distance between positions.
 
-    The positions `wanted` are in ascending order. The new positions are between `start` and `end`,
-    and the sum of the squared shifts is minimal. If there is not enough room, the positions extend
-    beyond `end`. The method subtracts the gaps from the positions and applies isotonic regression,
-    which replaces each descending run by its mean.
+    The sum of the squared shifts is minimal. `wanted` is in ascending order. The new positions are
+    from `start` to `end`, but extend beyond `end` if there is not enough room.
     """
+    # isotonic regression of the positions without the gaps
     pools: list[tuple[float, int]] = []
     for index, position in enumerate(wanted):
         mean, count = position - index * gap, 1

@@ -28,10 +28,8 @@ def typeset(
 ) -> bytes:
     """Typeset a typst template; a PNG contains only the first page.
 
-    Parameters
-    ----------
-    inputs : texts that the template reads from `sys.inputs`; they are not interpreted as markup
-    timestamp : date of a PDF, in seconds since 1970; None for no date
+    `inputs` are texts in `sys.inputs`, not interpreted as markup. `timestamp` is the PDF date in
+    seconds since 1970, or None for no date.
     """
     import typst
 

@@ -1,5 +1,4 @@
 """The line builder in a web page: Python in a Web Worker (Pyodide), with its screen in xterm.js.
 
-`folder` writes the page. `driver`, `builder` and `documents` run in the page, and in the tests
-under CPython.
+`folder` and `archive` write the page; the other modules run in the page.
 """

@@ -32,13 +32,10 @@ _TIME_STAMP = (1980, 1, 1, 0, 0, 0)
 
 
 def packed(python: str) -> bytes:
-    """Create the ZIP archive and return its content. The same files always give the same bytes.
+    """Create the ZIP archive and return the content; the same files always give the same bytes.
 
-    Parameters
-    ----------
-    python : version of Python in the runtime of the page, such as "3.13". If the current process
-        runs the same version, the archive also contains compiled modules, so that the page starts
-        sooner.
+    The archive also contains compiled modules if the page has the Python version (such as "3.13")
+    of this process.
     """
     compiles = python == f"{sys.version_info[0]}.{sys.version_info[1]}"
     content = io.BytesIO()

@@ -77,7 +77,7 @@ class PageBuilder(BuildApp):
 
 
 class WebPage:
-    """Python side of the page, which runs the builder on a file that is kept in memory.
+    """Python side of the page, which runs the builder on a file in memory.
 
     Parameters
     ----------

@@ -20,9 +20,9 @@ class Download:
     Attributes
     ----------
     kind : name of the kind in the messages of the page
-    title : title of the button that starts the download
+    title : title of the download button
     suffix : text appended to the name of the mooring file
-    content : function that makes the document from a list of the mooring in each environment
+    content : function that makes the document from the mooring in each environment
     """
 
     kind: str
@@ -72,17 +72,8 @@ DOCUMENTS = (
 def document(kind: str, view: live.View) -> tuple[str, bytes]:
     """Create a document for a solved line, and return its name and content.
 
-    Parameters
-    ----------
-    kind : name of a kind in `DOCUMENTS`
-    view : results of the line in the builder; its solutions are reused
-
-    Raises
-    ------
-    UsageError
-        The line is not solved, or the document is not available for a tow.
-    NoEquilibrium
-        The line has no equilibrium.
+    `kind` is in `DOCUMENTS`. Raise UsageError if the line is not solved, or the document is not
+    available for a tow. Raise NoEquilibrium for a line without equilibrium.
     """
     wanted = next(each for each in DOCUMENTS if each.kind == kind)
     name = f"{view.path.stem}{wanted.suffix}"

@@ -106,12 +106,9 @@ class PageDriver(Driver):
     def move_mouse(self, kind: str, x: int, y: int, button: int, held: Mapping[str, bool]) -> None:
         """Send a mouse event to the application.
 
-        Parameters
-        ----------
-        kind : `down`, `up`, `move`, `scroll up` or `scroll down`
-        x, y : column and row, counted from 0
-        button : number of the mouse button, counted from 1; 0 if no button is pressed
-        held : whether `shift`, `alt` and `ctrl` are pressed
+        `kind` is `down`, `up`, `move`, `scroll up` or `scroll down`. Column `x` and row `y` count
+        from 0, buttons from 1 (0 for none). `held` tells whether `shift`, `alt` and `ctrl` are
+        pressed.
         """
         change = x - self._mouse_at[0], y - self._mouse_at[1]
         keys = held["shift"], held["alt"], held["ctrl"]

@@ -31,23 +31,11 @@ _SCREEN = ("xterm.js", "xterm.css")
 
 
 def write_page(folder: Path, runtime: Path | None = None) -> list[str]:
-    """Write the page to a folder, which is created if needed; other files in the folder are kept.
+    """Write the page to a folder and return the names of its files; other files are kept.
 
-    Parameters
-    ----------
-    runtime : folder that contains the releases of Pyodide and xterm.js, possibly in subfolders. The
-        releases are copied to the page. By default, the page loads the releases from the addresses
-        `PYODIDE` and `TERMINAL`.
-
-    Returns
-    -------
-    list of str
-        Names of the written files.
-
-    Raises
-    ------
-    UsageError
-        Files of the runtime are missing.
+    `runtime` is a folder with releases of Pyodide and xterm.js, which are copied to the page. By
+    default, the page loads the releases from `PYODIDE` and `TERMINAL`. Raise UsageError if a file
+    of the runtime is missing.
     """
     found = {} if runtime is None else _runtime_files(runtime)
     python = PYTHON

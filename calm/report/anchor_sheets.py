@@ -1,8 +1,4 @@
-"""Anchor sheets: the plan of the anchor drop, and the anchor position found from acoustic ranges.
-
-The plan lists instructions, expected values and the course of the descent. The position is plotted
-as the intersection of range circles, as is done on board.
-"""
+"""Anchor sheets: plan of the anchor drop, and anchor position from acoustic ranges."""
 
 from __future__ import annotations
 
@@ -188,13 +184,10 @@ def _distance(distance: float) -> str:
 
 
 def offset_from_target(plan: DropPlan, place: tuple[float, float]) -> str:
-    """Format the distances of a place north and east of the target.
+    """Format the position of a point relative to the target, north and east.
 
-    If the position of the target is known, latitude and longitude of the place follow.
-
-    Parameters
-    ----------
-    place : distances east and north of the target [m]
+    Latitude and longitude follow if known. `place` is the distances east and north of the target
+    [m].
     """
     east, north = place
     position = plan.position(place)
@@ -215,9 +208,8 @@ _DASHES = ((), (6.0, 2.0), (4.0, 2.0, 1.0, 2.0), (1.0, 1.5), (2.0, 1.0))
 def drop_figure(plan: DropPlan) -> str:
     """Draw the anchor drop as SVG.
 
-    The left panel shows the path of the anchor and the shape of the line at several times, true to
-    scale. The line at each time has its own dash pattern, for black-and-white print, and an entry
-    in the legend. The right panel shows the fall speed against depth.
+    The left panel shows the path of the anchor and the line at several times, true to scale. The
+    right panel shows the fall speed against depth.
     """
     greys = [round(255 * shade) for shade in np.linspace(0.65, 0.0, len(plan.moments))]
     moments = [
@@ -350,11 +342,10 @@ _PANEL = 290.0
 
 
 def located_figure(located: Located) -> str:
-    """Draw the ranges as circles around the ship positions, as SVG.
+    """Draw an acoustic survey of the anchor as SVG, with a circle for each range.
 
-    The circles are at the depth of the transponder. The left panel shows the whole survey; the
-    right panel shows the anchor position with its 95 % ellipse. The circle of a rejected range is
-    grey and dashed, and is labelled with the line number of the range in the file.
+    The circles are at the depth of the transponder; rejected ranges are dashed. The right panel
+    shows the anchor position with a 95 % ellipse.
     """
     frame, survey = located.survey.frame, located.survey
     ships = frame.place(

@@ -193,19 +193,8 @@ def _fit_text(fit: Fit) -> str:
 def write_summary(result: Path, mooring: Design) -> Summary:
     """Write the summary of a finished batch as JSON and HTML files next to the batch file.
 
-    The batch file is not changed, so its summary can be written again at any time.
-
-    Parameters
-    ----------
-    result : path of the batch file RESULT.nc, next to which RESULT.summary.json and
-        RESULT.summary.html are written
-    mooring : mooring of the batch
-
-    Raises
-    ------
-    UsageError
-        The result cannot be read, a file cannot be written, or the disk has no room for a temporary
-        file of the size of the uncompressed result.
+    `result` is the path of the batch file. Raise UsageError if a file cannot be read or written, or
+    if the disk has no room for the uncompressed result.
     """
     with open_result(result) as stored:
         summary = statistics.summarize(stored, mooring, result.parent, result)
@@ -230,11 +219,10 @@ _ALL = (
 
 
 def summary_part(summary: Summary) -> ReportPart:
-    """Build the summary of a batch for a terminal of 80 columns, with long labels wrapped.
+    """Build the summary of a batch for a terminal of 80 columns.
 
-    The summary lists components and clamps with the 99th percentile and the maximum of each
-    quantity. The failure rate of each rule, the worst profile for each response, and the return
-    levels follow.
+    The first table gives the 99th percentile and the maximum of each quantity, by component and
+    clamp.
     """
     lost = State.FAIL if summary.count - summary.solved else None
     ended = blocks.Span(batch_summary.status_counts(summary), lost)

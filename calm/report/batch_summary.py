@@ -19,17 +19,14 @@ from calm.version import __version__
 
 
 def summary_document(summary: Summary) -> dict[str, Any]:
-    """Return the JSON object of a summary.
+    """Return the JSON object of a batch summary.
 
-    Values are in SI units and degrees, times are in UTC, and shares are fractions of 1; unknown
-    values are null. The main keys are:
+    Values are in SI units and degrees, times in UTC, and rates are fractions of 1. Unknown values
+    are null. Less obvious keys are:
 
-    - `profiles`: number of profiles by status
-    - `components`, `clamps`: distributions of the values of each part
+    - `components`, `clamps`: distributions of values
     - `rules`, `limits`: frequency of violations
-    - `limits_used`: limits that the rules apply
     - `responses`: exceedance curves and return levels of the line as a whole
-    - `worst`: worst profiles for each response
     """
 
     def part_documents(*, clamped: bool) -> list[dict[str, Any]]:
@@ -162,11 +159,8 @@ def _most_exceeded(rule: RuleShare) -> str:
 def profiles_table(title: str, profiles: Sequence[tuple[str, WorstProfile]]) -> Table:
     """Tabulate profiles with their responses.
 
-    Parameters
-    ----------
-    title : title of the table
-    profiles : pairs of a text for the first column and a profile; the text is empty, or names the
-        response for which the profile is the worst
+    Each profile is paired with the name of the response for which the profile is the worst, or with
+    "".
     """
 
     def response(name: str) -> Field:

@@ -1,6 +1,6 @@
 """Building blocks of all reports: on a terminal, in HTML or PDF, and in notebooks.
 
-All texts are plain text without markup; each output format escapes them as required.
+All texts are plain text without markup; each output format escapes special characters.
 """
 
 from __future__ import annotations
@@ -20,14 +20,12 @@ class Column:
 
     Attributes
     ----------
-    heading, unit : title, and unit below the title
-    numeric : whether the cells are numbers
-    share : weight of the column when the remaining width of the page is distributed: 0 for short
-        words, 1 for names, more for sentences. A numeric column with a share of 1 gets no
-        additional width
-    short : shorter title for narrow tables; it may have several lines
+    unit : unit below the title
+    share : weight in the division of the page width: 0 for short words, 1 for names, more for
+        sentences
+    short : shorter title for narrow tables, perhaps of several lines
     narrow : whether narrow tables include the column
-    marked : whether cells may carry a mark
+    marked : whether cells may mark values near or beyond a limit
     """
 
     heading: str
@@ -45,14 +43,12 @@ class Cell:
 
     Attributes
     ----------
-    text, detail : text, and a smaller line below it
+    detail : smaller text below the main text
     state : state of a check, shown by colour and words
     mark : symbol after a value that is close to a limit or beyond it
-    indented : whether the cell is indented below the row above
-    strong : whether the text is bold
     goes_on : whether, in print, the detail follows on the same line
     then : suggested action
-    bar : value as a fraction of its limit, drawn as a bar with a mark at 1
+    bar : value as a fraction of its limit, drawn as a bar
     picture : SVG drawing
     tone : highlight in a matrix: `fail`, `over` or `near`
     """
@@ -76,13 +72,12 @@ class Table:
 
     Attributes
     ----------
-    note : text below the table
     totals : number of rows at the end that are sums
-    sortable : whether the rows can be sorted and filtered
-    dense : whether the spacing of the columns is reduced because there are many
-    by_hand : whether the table is filled in by hand, and has rules and room to write
-    aside : text in smaller letters next to the title
-    ruled : whether there is a hairline below each row
+    sortable : whether readers can sort and filter the rows
+    dense : whether the columns are closely spaced
+    by_hand : whether the table is filled in by hand
+    note, aside : text below the table, and smaller text next to the title
+    ruled : whether there is a line below each row
     """
 
     title: str
@@ -97,7 +92,7 @@ class Table:
     ruled: bool = True
 
     def without_empty_columns(self) -> Table:
-        """Return the table without empty columns; a table to be filled in by hand keeps them."""
+        """Return the table without empty columns, except a table to be filled in by hand."""
         count = len(self.columns)
         full = [row for row in self.rows if len(row) == count]
         kept = [at for at in range(count) if any(row[at] != _EMPTY for row in full)]
@@ -179,8 +174,8 @@ class Heading:
 class Listing:
     """Text of a file, to be shown in a report.
 
-    If `name` is set, the text is attached to a PDF as a file of this name. If the text has more
-    than `most` lines, it is not printed in the PDF but only attached.
+    A PDF attaches the text as a file called `name`, unless `name` is empty. A text of more than
+    `most` lines is only attached, not printed.
     """
 
     title: str
@@ -211,11 +206,8 @@ class TitleBlock:
 class SignOff:
     """Table of revisions, and boxes for signatures, at the foot of a page.
 
-    Attributes
-    ----------
-    revisions : revision, date, author and reason of each revision
-    roles : role of each signatory, and the name if known
-    note : text next to the boxes
+    `revisions` have revision, date, author and reason; `roles` have role and name. `note` is next
+    to the boxes.
     """
 
     revisions: tuple[tuple[str, str, str, str], ...]
@@ -247,10 +239,8 @@ class OpenItems:
 class Beside:
     """Two groups of blocks, side by side in print.
 
-    Attributes
-    ----------
-    share : fraction of the width for the left group
-    height : exact height of both groups in print [pt]; 0 if their contents determine the height
+    `share` is the fraction of the width for the left group. `height` is in points; 0 fits the
+    contents.
     """
 
     left: tuple[Block, ...]
@@ -286,11 +276,7 @@ class ReportPart:
 class Running:
     """Running header and footer of every page.
 
-    Attributes
-    ----------
-    document, title : left side of the header
-    verdict, date : right side of the header
-    foot : left side of the footer, opposite the page number
+    `document` and `title` are on the left side of the header, `verdict` and `date` on the right.
     """
 
     document: str = ""
@@ -302,10 +288,9 @@ class Running:
 
 @dataclass(frozen=True)
 class Section:
-    """Section of a report, on one mooring or tow, with its name and its parts.
+    """Section of a report, on one mooring or tow.
 
-    A section with its own `running` header starts a new page without a title. Sections may be built
-    in separate processes.
+    A section with its own `running` header starts a new page without a title.
     """
 
     name: str
@@ -315,19 +300,16 @@ class Section:
 
 @dataclass(frozen=True)
 class Report:
-    """A report with all its sections.
+    """A report with all sections.
 
     Attributes
     ----------
-    title, subtitle : titles of the first page
-    front : parts before the sections
+    front : content before the sections
     sections : one section per mooring or tow
-    date : date as text, or None
     plates : full-page drawings at the beginning
-    verdict : verdict with its state, in the header of every page
-    foot : text in the footer of every page
-    running : header and footer that replace title, verdict, date and foot if the first page has its
-        own title block
+    verdict, foot : texts in the header and the footer of every page
+    running : header and footer of a report whose first page has its own title block; replaces
+        title, verdict, date and foot
     """
 
     title: str
@@ -354,11 +336,9 @@ def words(heading: str, show: Shown = "", share: float = 1.0, **more: Any) -> Fi
 
     Parameters
     ----------
-    heading : heading of the column
-    show : what a cell shows of an item: the name of an attribute, the index of a member, or a
-        function of the item; by default, the attribute with the name `heading`
-    share : share of the width, as in `Column`
-    more : further attributes of `Column`
+    show : attribute name, member index, or function that gives the text of an item; by default, the
+        attribute named `heading`
+    share, more : attributes of `Column`
     """
     return Column(heading, share=share, **more), _getter(show, heading)
 
@@ -378,7 +358,7 @@ def number(heading: str, show: Shown = "", unit: str = "", **more: Any) -> Field
 
 
 def of_first(*fields: Field) -> list[Field]:
-    """Adapt columns of items to rows whose first member is the item."""
+    """Adapt columns of items to rows that are tuples with the item as first member."""
 
     def first(show: Callable[[Any], Any]) -> Callable[[Any], Any]:
         return lambda row: show(row[0])
@@ -394,12 +374,8 @@ def blank(heading: str, unit: str = "", share: float = 1.0) -> Field:
 def quantity(name: str | Quantity, show: Shown = "", heading: str | None = None) -> Field:
     """Create a column of a quantity for `table_of`, in display units.
 
-    Parameters
-    ----------
-    name : name of the quantity, or the quantity itself
-    show : value to show of an item [SI, degrees], as in `words`; by default, the attribute with the
-        name of the quantity
-    heading : heading of the column, if it differs from the usual heading of the quantity
+    `show` gives the value [SI, degrees] as in `words`; by default, the attribute named like the
+    quantity. `heading` replaces the usual heading.
     """
     shown = QUANTITIES[name] if isinstance(name, str) else name
     value = _getter(show, shown.name)
@@ -425,11 +401,8 @@ def quantity_column(quantity: Quantity, heading: str | None = None) -> Column:
 def figure_cell(quantity: Quantity, value: float | None, state: State | None = None) -> Cell:
     """Format a value for a `quantity_column`.
 
-    Parameters
-    ----------
-    value : value in SI units or degrees; None if unknown
-    state : state of the value, which selects the mark: a warning if the value is close to a limit,
-        or a failure if it is beyond the limit
+    `value` is in SI units or degrees; None if unknown. A warning marks a value close to a limit, a
+    failure a value beyond the limit.
     """
     return Cell(quantity.format(value), state=state, mark=state.sign if state else "")
 
@@ -448,11 +421,9 @@ def table_of(
 
     Parameters
     ----------
-    items : items to tabulate; a `Cell` among the items is a heading for the following rows
-    fields : fields created by `words`, `number` and `quantity`
-    note : text below the table
-    sums : items of the total rows at the end of the table
-    more : further attributes of `Table`
+    items : items to tabulate; a `Cell` is a heading for the following rows
+    fields : columns created by `words`, `number` and `quantity`
+    sums : items of the total rows at the end
     """
     totals = list(sums)
     rows = (

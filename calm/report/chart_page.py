@@ -1,12 +1,10 @@
 """Chart of cables in a uniform current for one value of K, on an A4 page.
 
-The main curve is graduated in the angle φ and the arc length s′. A cable is the part of this curve
-between its lower end A and its upper end B. Three families of curves show the ratios L/H, D/H and
-T_A/(wH). L is the length of the cable, D the horizontal distance and H the difference in height
-between A and B, T_A the tension at A, and w the weight per metre. Along each curve, which is the
-locus of the points P = (y′ of A, z′ of B), one of the ratios is constant.
-
-The module also reports the cables for three given quantities, as a table and as JSON.
+The main curve is graduated in the angle φ and the arc length s′. A cable is the part of the main
+curve from a lower end A to an upper end B. Each point P = (y′ of A, z′ of B) stands for one cable.
+Further curves connect points with equal L/H, D/H or T_A/(wH). L is the length of the cable, D and H
+are the horizontal and vertical distances from A to B. T_A is the tension at A, and w the weight per
+metre.
 """
 
 from __future__ import annotations
@@ -60,16 +58,10 @@ _FAMILIES = (
 
 
 def draw_chart(k: float, lower_end: str = "below-90") -> Figure:
-    """Draw the chart for one value of K (0 to 100) on an A4 page, without overlapping labels.
+    """Draw the chart for one value of K (0 to 100) on an A4 page.
 
-    `lower_end` states whether the angles at the lower ends of the cables are ``below-90`` or
-    ``above-90`` degrees. The figure is not attached to a window.
-
-    Raises
-    ------
-    UsageError
-        K is out of range, or K is 0 and `lower_end` is ``above-90``: for K = 0, the curve ends at
-        90°.
+    `lower_end` is ``below-90`` or ``above-90``, for angles [degrees] at the lower ends of the
+    cables. Raise UsageError if K is out of range, or if K is 0 and angles are above 90°.
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
@@ -231,10 +223,8 @@ class Labels:
     def tick(self, x: float, y: float, angle: float, size: float, colour: str) -> None:
         """Draw a tick at a point of a curve, to the right when facing along the curve.
 
-        Parameters
-        ----------
-        angle : direction of the curve [rad]
-        size : length of the tick in points; if negative, the tick is drawn to the left
+        `angle` is the direction of the curve [rad]. A negative `size` [pt] draws the tick to the
+        left.
         """
         place, right = self._pixel_and_normal(x, y, angle)
         ends = np.array([place, place + right * size * self._points])

@@ -14,7 +14,7 @@ from calm.report.result_files import members
 
 @dataclass(frozen=True)
 class StrongestCurrent:
-    """Strongest current in all environments, and a warning if even this current is weak."""
+    """Strongest current in all environments, and a warning if the strongest current is weak."""
 
     speed: float
     depth: float

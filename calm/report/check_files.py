@@ -36,12 +36,14 @@ def listed_findings(
 ) -> Iterator[tuple[Finding, bool]]:
     """Yield the findings to list for a mooring, each with a flag that marks governing findings.
 
-    Among several findings, the finding with the largest utilisation governs. The list contains:
-    (1) the governing finding of each rule, with the flag true; (2) the governing finding of each
-    rule on each component over all environments, unless it passes with a utilisation below
-    `MUCH_USED`; (3) all failures, unknowns and warnings in each environment. A cluster of
-    equal floats counts as a single component. If `every` is true, all findings of all situations
-    are listed.
+    The finding with the largest utilisation governs. The list contains:
+
+    - the governing finding of each rule, flagged
+    - the governing finding of each rule on each component, unless it passes with a utilisation
+      below `MUCH_USED`
+    - the failures, unknowns and warnings in each environment
+
+    A cluster of equal floats counts as one component. `every` lists all findings.
     """
     found = [*assessment.every_finding()]
     leading = {id(one) for one in governing_of_each_rule(found)}
@@ -66,23 +68,16 @@ def _entry_key(finding: Finding) -> Hashable:
 def check_document(assessments: Sequence[Assessment], *, every: bool = False) -> dict[str, Any]:
     """Return the JSON object of a design check; results without a solution are null.
 
-    From `situations` on, the value of each key is an object whose keys are the names of the
-    moorings. The main keys are:
+    From `situations` on, each value is an object with one entry per mooring, by name. Less obvious
+    keys are:
 
-    - `verdict`, `state`: conclusion from all findings, and worst state
     - `estimated`: number of findings based on estimates
-    - `accepted`: accepted findings with reasons
     - `findings`, `findings_in_all`: listed findings, and number of all findings
-    - `situations`: solved situations in each environment
     - `key_figures`: values of page one
     - `launch`, `recovery`: deployment, and ascent after release
     - `backup`, `losses`: net buoyancy after breaks, and after the loss of a float
-    - `inventory`, `totals`: pieces and clamps, and their totals
-    - `document`: document of the mooring file, if any
 
-    Parameters
-    ----------
-    every : whether to list every finding instead of the selection made by `listed_findings`
+    `findings` are those of `listed_findings`, or all if `every` is true.
     """
 
     def by_name(value_of: Callable[[Assessment], Any]) -> dict[str, Any]:

@@ -61,13 +61,10 @@ class SummaryRow:
 
     Attributes
     ----------
-    mooring : name of the mooring
-    depth : water depth as text
     cells : cells by name of the environment, in the order of the columns
     handling : cell for launch, recovery and breaks
     governs : check with the largest utilisation in the first environment
-    accepted, findings : number of accepted findings, and number of all findings
-    conclusion : verdict
+    accepted, findings : numbers of accepted findings and of all findings
     """
 
     mooring: str
@@ -176,10 +173,9 @@ def summary_page(rows: Sequence[SummaryRow]) -> Iterator[Block]:
 
 
 def environments_of(rows: Sequence[SummaryRow]) -> tuple[list[str], list[str], dict[str, str]]:
-    """Return all environments, the environments that have a column in the matrix, and all codes.
+    """Return all environments, the environments with a column in the matrix, and their codes.
 
-    Only the most severe environments have a column. The codes, such as E1, are in a mapping from
-    the names of the environments.
+    If there are many, only the most severe have a column. Codes are E1, E2 and so on.
     """
     names = list(dict.fromkeys(name for row in rows for name in row.cells))
     codes = {name: f"E{at}" for at, name in enumerate(names, 1)}

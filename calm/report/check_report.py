@@ -81,7 +81,7 @@ def _page(shown: Sequence[Block]) -> ReportPart:
 
 
 def check_report(sections: Sequence[CheckedSection]) -> blocks.Report:
-    """Build the report of a design check; for several moorings, it begins with a matrix."""
+    """Build the report of a design check, beginning with a matrix if there are several moorings."""
     rows = [each.row for each in sections]
     if len(rows) == 1:
         name = sections[0].name

@@ -1,7 +1,6 @@
 """Design check on a terminal: verdict, load cases, utilisations, open items, and exclusions.
 
-For a mooring without failures, the output is at most `MOST_LINES` lines of 80 characters. Several
-moorings appear as a matrix of maximum utilisations.
+A mooring without failures takes at most `MOST_LINES` lines. Several moorings appear as a matrix.
 """
 
 from collections.abc import Iterator, Sequence

@@ -26,8 +26,8 @@ def worst_by_part(findings: Iterable[Finding]) -> list[Finding]:
 def joined(findings: Iterable[Finding]) -> list[list[Finding]]:
     """Group findings of one rule that differ only in component and values.
 
-    Findings that are unknown because the same value of a component is missing form their own group.
-    All failures of a rule on the anchor form one group, whether or not any capacity is left.
+    Unknown findings form a group for each missing value. Failures of a rule on the anchor form one
+    group.
     """
 
     def cause(one: Finding) -> Hashable:
@@ -77,9 +77,8 @@ def named_components(findings: Iterable[Finding]) -> str:
 def counted_states(findings: Iterable[Finding]) -> Counter[State]:
     """Count the results of rules on components by state, for one or several moorings.
 
-    For each rule, only the most severe state of a component is counted. A missing value of a
-    component is counted once. A cluster of equal floats is counted once if every float fails or
-    warns.
+    A rule counts once per component, with its most severe state. A missing value, or a cluster of
+    failing or warning floats, counts once.
     """
     by_mooring = grouped_by(findings, attrgetter("mooring")).values()
     groups = (grouped_by(worst_by_part(each), counted_as).values() for each in by_mooring)
@@ -93,8 +92,8 @@ GRAVE = (State.FAIL, State.UNKNOWN, State.WARN)
 def counted_as(finding: Finding) -> tuple[Hashable, ...]:
     """Return a key that is equal for findings that are counted together.
 
-    Findings on equal pieces from one row of the file, such as a cluster of floats, are counted
-    together if their state is in `GRAVE`.
+    Findings on equal pieces from one row of the file are counted together if their state is in
+    `GRAVE`.
     """
     place = finding.place
     if finding.missing is not None or place is None or finding.state not in GRAVE:
@@ -120,9 +119,9 @@ def limits_table(limits: Iterable[LimitKey], title: str = "Limits as used") -> T
 
 
 def component_text(name: str, units: int) -> str:
-    """Format the name of a component, with the number of units if it consists of several.
+    """Format the name of a component, with the number of units if there are several.
 
-    An example of such a component is a pair of releases.
+    An example is a pair of releases.
     """
     return f"{name}, {units} units each" if units > 1 else name
 

@@ -74,10 +74,9 @@ def to_list(catalogue: Catalogue, definitions: Mapping[str, Defined]) -> ReportP
 
 
 def to_card(identifier: str, definition: Defined, catalogue: Catalogue | None = None) -> ReportPart:
-    """Create the card of a definition, with all values in display units and with their sources.
+    """Create the card of a definition, with values in display units and their sources.
 
-    Derived values follow the specified values. If the catalogue has several definitions of the same
-    product, the card ends with a comparison that recommends the best definition.
+    If the catalogue defines the product several times, the card compares the definitions.
     """
     following = _derived_pairs(datasheet(definition, catalogue), _per_metre(definition))
     pairs = Pairs((*_specified_pairs(definition), *following))
@@ -89,8 +88,8 @@ def to_card(identifier: str, definition: Defined, catalogue: Catalogue | None = 
 def to_documents(catalogue: Catalogue, definitions: Mapping[str, Defined]) -> list[dict[str, Any]]:
     """Return JSON objects with `id`, `family` and every field (SI or degrees, None if absent).
 
-    The key `derived` contains derived values. The key `same_thing` lists the ids of all definitions
-    of the same product, with the preferred definition first.
+    `derived` has derived values. `same_thing` lists all definitions of the same product, preferred
+    first.
     """
     return [
         {"id": identifier, "family": _family(catalogue, identifier)}

@@ -30,8 +30,7 @@ def deck_csvs(deck: Deck) -> dict[str, str]:
 def deck_workbook(deck: Deck) -> bytes:
     """Write the sheets into one Excel workbook that is ready to print, with units in the headings.
 
-    Texts are stored as texts, even if they begin with a symbol that marks a formula. The date of
-    the workbook comes from `provenance.moment`.
+    Texts are never formulas. The date of the workbook comes from `provenance.moment`.
     """
     from xlsxwriter import Workbook
 
@@ -154,10 +153,9 @@ def _sheet(columns: str, items: Iterable[Any]) -> tuple[Sequence[str], Rows]:
 
 
 def deck_report(deck: Deck, page_size: PageSize, notes: tuple[str, ...] = ()) -> Report:
-    """Build the printed deck documents of a mooring.
+    """Build the printed deck documents of a mooring: diagram, logs, lists and drop plan.
 
-    The documents contain the diagram, the deployment log, lists, the drop plan and, on a new sheet,
-    the recovery log. `notes` are added to the warnings on the first sheet.
+    `notes` are added to the warnings on the first sheet.
     """
     parts: list[ReportPart] = [*provenance.document_part(deck.file)]
     if warnings := warned((*deck.notes, *notes)):

@@ -141,10 +141,7 @@ def hardware_part(deck: Deck) -> ReportPart:
 
 
 def shipping_part(deck: Deck) -> ReportPart:
-    """Build the shipping list; each sum is followed by the number of items not included.
-
-    An item is not included in a sum if its value is unknown.
-    """
+    """Build the shipping list; each sum is followed by the number of items with unknown values."""
 
     def at_least(heading: str, name: str, value: str, missing: str) -> Field:
         shown = QUANTITIES[name]

@@ -65,10 +65,9 @@ class PageSize(StrEnum):
 
 @dataclass(frozen=True)
 class _PageColumn:
-    """A column of the diagram: its parts, the texts at its two ends, and its leg.
+    """A column of the diagram, with the parts of one leg of a net or of a single line.
 
-    `above` and `below` are the texts at the connections to other columns. They are None if the line
-    ends in the water or on the seabed.
+    `above` and `below` are the texts at connections to other columns, or None.
     """
 
     parts: tuple[PlacedPart, ...]
@@ -124,8 +123,7 @@ class _Diagram:
     ) -> _Stacks:
         """Distribute the parts of all legs evenly over the columns.
 
-        Parts move to the last column until it is about as long as the first. The last column must
-        leave room for the seabed and the legend above the title block.
+        The last column leaves room for the seabed and the legend above the title block.
         """
         need = _GROUND + LEADING - (-len(self.legend) // _LEGEND_COLUMNS) * _LEGEND_ROW
         lowest = self.bottom
@@ -233,9 +231,8 @@ class _Diagram:
 def diagram_pages(deck: Deck, page_size: PageSize) -> list[str]:
     """Draw the pages of the diagram as SVG pictures at print size; no text is smaller than 8 pt.
 
-    A page ends above a junction if there is a junction near the end of the page, otherwise between
-    two pieces or, failing that, between two clamps. Where a line is interrupted, both ends carry
-    the same letter. Long texts wrap and are never cut. The same deck gives the same SVG.
+    Where a page interrupts a line, preferably above a junction, both ends carry the same letter.
+    The same deck gives the same SVG.
     """
     diagram = _Diagram(deck, page_size)
     pages = [picture(*page_size.size, diagram.title) for _ in range(diagram.count)]

@@ -1,7 +1,7 @@
 """Reports that explain a mooring.
 
-The reports cover the mass and ascent of a mooring, the causes of its knockdown, the change that
-meets a target, and the comparison of two designs.
+The reports are on mass and ascent, the causes of knockdown, the change that meets a target, and the
+comparison of two designs.
 """
 
 from __future__ import annotations
@@ -120,8 +120,8 @@ _ANCHOR = ("tension", "vertical", "horizontal", "required_weight")
 def explanation_part(explanation: Explanation) -> ReportPart:
     """Report the contribution of each drag force, and the effects of changed inputs.
 
-    The report fits 80 columns. Drag forces with very small shares are combined in one row; the JSON
-    document lists them separately.
+    The report fits 80 columns. Drag forces with very small shares are combined in one row, but
+    listed separately in the JSON document.
     """
     wholes = [
         f"{name} ({_COLUMNS[name].text(explanation.figures)} m)"
@@ -206,7 +206,7 @@ _ROWS = (
 
 
 def sizing_part(sizing: Sizing) -> ReportPart:
-    """Report the change by which a target is met, and the other effects of this change."""
+    """Report the change that meets a target, and all other effects of the change."""
     assert sizing.after is not None
     lines: list[blocks.Line] = []
     if sizing.before.failure is not None:
@@ -273,7 +273,7 @@ def _shown_part(trial: Trial) -> str:
 
 
 def comparison_part(comparison: Comparison) -> ReportPart:
-    """Report the differences between two designs, followed by the values of both, side by side."""
+    """Report the differences between two designs, and the values of each design side by side."""
     return ReportPart(" → ".join(comparison.names), tuple(_comparison_blocks(comparison)))
 
 

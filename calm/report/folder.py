@@ -29,8 +29,8 @@ REPORT_FILES = ("report.html", "report.pdf", "report.json", "checks.csv", "inven
 def check_folder(folder: Path) -> None:
     """Raise UsageError if files cannot be written to a folder; call this before any computation.
 
-    The error is raised if the path, or the nearest existing parent of the path, is not a folder or
-    is not writable. It is also raised if a new folder would have the suffix of a file.
+    The folder, or the nearest existing parent of a new folder, must be writable. The name of a new
+    folder must not have a file suffix.
     """
     try:
         with contextlib.suppress(FileNotFoundError):
@@ -57,9 +57,8 @@ def check_folder(folder: Path) -> None:
 def write_report(folder: Path, files: Mapping[str, bytes]) -> None:
     """Write the files of a report as a set, creating the folder if needed.
 
-    All files are first written under temporary names, then renamed. If a rename fails or the
-    program is interrupted, the previous report is completely restored. No temporary file remains.
-    Raise UsageError if the system rejects a file; the message gives the file and the reason.
+    If the program fails or is interrupted, the previous report is restored and no temporary file
+    remains. Raise UsageError, with the file and the reason, if the system rejects a file.
     """
     parts = {name: folder / f".{name}-{os.getpid()}.part" for name in files}
     kept = {name: folder / f".{name}-{os.getpid()}.old" for name in files}
@@ -108,8 +107,8 @@ def _restore_previous(folder: Path, parts: Mapping[str, Path], kept: Mapping[str
 def check_destination(path: Path) -> None:
     """Raise UsageError if a file cannot be written; call this before any computation.
 
-    The error is raised if the path is a folder, if the folder of the file does not exist, or if the
-    file or this folder is not writable.
+    The path must not be a folder, and its folder must exist. The file, or the folder of a new file,
+    must be writable.
     """
     folder = os.path.dirname(os.path.realpath(path))
     if os.path.isdir(path):
@@ -123,9 +122,8 @@ def check_destination(path: Path) -> None:
 def write_file(path: Path, content: bytes) -> None:
     """Write a file atomically, so that readers see either the old content or the new.
 
-    Devices and pipes are written directly, and symbolic links are preserved. Raise UsageError if
-    the system rejects the file, for example because the disk is full; the old file is then
-    unchanged.
+    Devices and pipes are written directly; symbolic links are preserved. Raise UsageError if the
+    system rejects the file.
     """
     try:
         if os.path.exists(path) and not os.path.isfile(path):
@@ -137,21 +135,17 @@ def write_file(path: Path, content: bytes) -> None:
 
 
 def printed(report: Report, page_size: str = "a4", leaves: Sequence[str] | None = None) -> bytes:
-    """Typeset a report as PDF; the texts are passed to the template as data, never as markup.
+    """Typeset a report as PDF, of size a4, a3 (landscape) or letter.
 
-    Equal reports give equal bytes, because the fonts come from the package and the only date comes
-    from SOURCE_DATE_EPOCH. Characters that are not in the fonts appear as �.
-
-    Parameters
-    ----------
-    page_size : a4, a3 (landscape) or letter
-    leaves : sections already converted by `pdf_leaf`
+    Equal reports give equal bytes; the only date comes from SOURCE_DATE_EPOCH. Characters that are
+    not in the fonts appear as �. `leaves` are sections already converted by `pdf_leaf`.
     """
     leaves = leaves or [pdf_leaf(section) for section in report.sections]
     when = moment()
     return typeset(
         (files("calm.report") / "report.typ").read_bytes(),
         {
+            # texts are passed as data, never as markup
             "report": pdf_leaf(replace(report, sections=())),
             "sections": f"[{','.join(leaves)}]",
             "paper": "us-letter" if page_size == "letter" else page_size,
@@ -170,8 +164,9 @@ def pdf_leaf(part: Report | Section) -> str:
 def _members(part: Any) -> dict[str, Any] | str:
     """Convert an object of a report to data for the PDF template.
 
-    A section becomes its printed members, a cell without further attributes its text, and any other
-    object a dictionary with its kind.
+    - A section becomes its printed members.
+    - A cell without further attributes becomes its text.
+    - Any other object becomes a dictionary with its kind.
     """
     if isinstance(part, Cell):
         text, *more = vars(part).values()

@@ -1,7 +1,7 @@
 """Load cases of a mooring, and the envelope of the loads on its pieces.
 
-A load case is a situation in an environment; in a net, it has a result for each leg. Values carry
-the code of their governing case, as in findings.
+A load case is a situation in an environment. Envelope values carry the code of their governing load
+case.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -51,11 +51,9 @@ class LoadCase:
 
     Attributes
     ----------
-    code : code of the case in findings, such as 1s
-    environment : name of the environment
-    situation : name of the situation
-    results : result for each leg; empty if there is no equilibrium
-    failure : reason why there is no equilibrium; None if there is one
+    code : code of the load case in findings, such as 1s
+    results : result of each leg of a net or of the single line; empty without equilibrium
+    failure : reason why there is no equilibrium, or None
     """
 
     code: str
@@ -156,10 +154,9 @@ class LoadCase:
 
 
 def load_cases(assessment: Assessment) -> list[LoadCase]:
-    """List the load cases of a mooring.
+    """List the load cases of a mooring, environment by environment.
 
-    Each environment is listed as given and then with its changes; still water is listed once, at
-    the end.
+    Each environment is followed by its variants, such as strumming. Still water is last.
     """
     numbers: dict[str, int] = {}
     found: dict[str, LoadCase] = {}
@@ -194,13 +191,11 @@ class PieceEnvelope:
     Attributes
     ----------
     number : number in the line, from 1
-    row : results for the piece in the first case
-    tension, case : maximum tension [N], and the code of the load case in which it occurs
+    row : results for the piece in the first load case
+    tension, case : maximum tension [N], and the code of its load case
     least, tilt : minimum tension [N] and maximum tilt [degrees]
-    moored, launch : strength finding in equilibrium, and during launch; None if there was no
-        check
-    launch_tension, rise_tension : maximum tension during launch and during ascent [N]; None if
-        unknown
+    moored, launch : strength finding in equilibrium, and during launch
+    launch_tension, rise_tension : maximum tension during launch and ascent [N]
     """
 
     number: int

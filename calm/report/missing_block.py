@@ -53,16 +53,11 @@ def missing_block(
 ) -> str:
     """Create the `components:` section of a mooring file, with the missing keys of each component.
 
-    For each component, comments name the pieces that use it and the place of its definition in the
-    file. For each key, comments give an example, the meaning of the key, the checks that need it,
-    and an estimate if there is one for this class of component. Optional keys follow as comments.
-    If a file already has a section `components:`, the block has no heading and can be pasted into
-    this section. If nothing is missing, or nothing can be checked, the text consists of comments
-    only.
+    Comments explain each key; optional keys are comments, too. If a file already has a section
+    `components:`, the block has no heading and is pasted into that section. The text has only
+    comments if no missing value is found, for example without an equilibrium.
 
-    Parameters
-    ----------
-    inventory : pieces and clamps, from which missing masses in air are listed
+    Masses in air that pieces and clamps of the `inventory` lack are optional keys.
     """
     found = list(findings)
     figures = [one.missing for one in found if one.missing is not None]

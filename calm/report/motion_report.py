@@ -48,14 +48,10 @@ def motion_report(
     notes: Sequence[str],
     cards: Sequence[ReadCard] = (),
 ) -> blocks.Report:
-    """Build the report, which begins with one page on the whole deployment.
+    """Build the report of a motion study, beginning with one page on the whole deployment.
 
-    Parameters
-    ----------
-    series : depths of the sensors and of other instruments over time
-    time : (n,) times of the record
-    notes : notes on the input
-    cards : summary card of each file read
+    `series` are the depths of the sensors and of other instruments over time, `time` the (n,)
+    times. `cards` summarise the input files.
     """
     bare = [one for one in series if not np.isfinite(one.measured).any()]
     sensors = [one for one in series if np.isfinite(one.measured).any()]
@@ -261,11 +257,11 @@ def _value_text(value: float, decimals: int = 2) -> str:
 def motion_document(
     study: MotionEstimate, name: str, cards: Sequence[ReadCard] = ()
 ) -> dict[str, Any]:
-    """Return the JSON object of a study: factors with 95 % intervals, and depth errors [m].
+    """Return the JSON object of a motion study: factors with 95 % intervals, and depth errors [m].
 
-    The key `sensors` gives, for each sensor in use, the agreement with the estimate and, under the
-    key `plain`, the agreement with the line computed from currents alone. The key `held_out` lists
-    withheld sensors, and the key `read` describes the input files.
+    `sensors` gives the agreement of each sensor with the estimate. Its key `plain` gives the
+    agreement with the line computed from currents alone. `held_out` lists withheld sensors, `read`
+    the input files.
     """
     sensors = [
         {"label": label, **_agreement_document(fit), "offset": float(offset)}
@@ -378,12 +374,9 @@ def _draw_depths(
 
 
 def false_figure(time: Any, false: Mapping[str, Any]) -> str:
-    """Draw a row of marks for each current level, at the times when the current appears false.
+    """Draw a row of marks for each current level, at the times of apparently false currents.
 
-    Parameters
-    ----------
-    time : (n,) times of the record
-    false : times with a false current, by name of the level
+    `time` are the (n,) times of the record; `false` has times by level.
     """
     names = list(false)
     left = min(max(text_width(name, _SIZE) for name in names) + 12.0, 0.4 * _WIDTH)

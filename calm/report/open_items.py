@@ -112,18 +112,19 @@ def where_text(finding: Finding) -> str:
 def open_groups(assessment: Assessment) -> list[list[Finding]]:
     """Group the open findings by cause, most severe first.
 
-    Failures, unknowns and warnings share a cause if they differ only in component and values.
-    Estimates share a cause if they concern the same component; such estimates are omitted if a
-    missing value of this component is already listed as an item. Acceptances share a cause if they
-    concern the same component and have the same reason. Findings that are not judged share a cause
-    if they belong to the same rule.
+    A group contains findings of one kind:
+
+    - failures, unknowns or warnings that differ only in component and values
+    - estimates for one component, unless its missing values are listed
+    - acceptances for one component with the same reason
+    - findings of one rule that are not judged
     """
     use = {one.label: one.use for one in assessment.inventory}
     return groups_of(assessment.every_finding(), use)
 
 
 def groups_of(findings: Iterable[Finding], use: Mapping[str, str]) -> list[list[Finding]]:
-    """Group open findings by cause.
+    """Group open findings by cause, as in `open_groups`.
 
     Parameters
     ----------
@@ -223,7 +224,7 @@ def _item(group: Sequence[Finding], number: int, *, keys: bool) -> OpenItem:
 
 
 def _extreme(finding: Finding) -> tuple[int, float]:
-    """Sort key for findings without a utilisation: state, then value."""
+    """Sort key for findings without a utilisation: state, then magnitude of the value."""
     value = finding.value or 0.0
     return finding.state.severity, -value if finding.sense == ">=" else abs(value)
 
@@ -301,8 +302,7 @@ def _capitalised(text: str) -> str:
 def draft(assessment: Assessment) -> bool:
     """Return whether a report is a draft, which must not be signed.
 
-    A report is a draft if its number, revision or date is missing, or if it relies on an acceptance
-    copied from an example.
+    A draft lacks a number, revision or date, or relies on an acceptance from an example.
     """
     document = assessment.file.document
     given = document is not None and all((document.id, document.revision, document.date))
@@ -310,10 +310,9 @@ def draft(assessment: Assessment) -> bool:
 
 
 def verdict_sentence(assessment: Assessment) -> str:
-    """Describe the verdict in sentences.
+    """Describe the verdict in sentences, with the number of open items and the rules concerned.
 
-    The sentences give the number of open items and the rules concerned. They also list every
-    utilisation over 100 % that is not a failure.
+    The sentences also list every utilisation over 100 % that is not a failure.
     """
     groups = open_groups(assessment)
     counts = Counter(governing(group).state for group in groups)

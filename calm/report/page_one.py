@@ -90,7 +90,7 @@ class SignedMooring:
 
     @cached_property
     def apart(self) -> frozenset[str]:
-        """Labels of those pieces of connecting hardware that need a table row of their own."""
+        """Labels of the connecting hardware that needs a table row of its own."""
         return standing_out(self.assessment.every_finding())
 
     @property

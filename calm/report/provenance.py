@@ -43,8 +43,7 @@ _LATEST = 253_402_300_799  # the last second of the year 9999
 def moment() -> datetime | None:
     """Return the time given by SOURCE_DATE_EPOCH, in UTC; None if the variable is not set.
 
-    Reports contain no other date. Raise UsageError if the value of SOURCE_DATE_EPOCH is not a
-    number of seconds, or if it is outside the range of the calendar.
+    Reports contain no other date. Raise UsageError if the value is not a valid number of seconds.
     """
     text = os.environ.get("SOURCE_DATE_EPOCH")
     if not text:
@@ -84,9 +83,8 @@ def file_name(file: MooringFile) -> str:
 def input_hash(files: Sequence[MooringFile]) -> str:
     """Return the SHA-256 hash of the inputs for all environments, in hexadecimal digits.
 
-    The hash covers the text of the mooring file. It also covers, as JSON with sorted keys, the
-    components with all catalogue values, the settings, and each environment with its currents,
-    including currents from a file. The location of the files has no effect.
+    The hash covers the text of the file, component values, settings, environments and currents, but
+    not file locations.
     """
     digest = hashlib.sha256((source_text(files[0]) or "").encode("utf-8", "replace"))
     first = canonical(files[0].pieces)
@@ -236,13 +234,10 @@ def position_text(position: Position) -> str:
 
 
 def degrees_text(degrees: float, sides: str, digits: int) -> str:
-    """Format an angle in whole degrees and in minutes to a thousandth.
+    """Format a latitude or longitude in whole degrees and in minutes to a thousandth.
 
-    Parameters
-    ----------
-    degrees : latitude or longitude [degrees]
-    sides : letters for positive and negative angles
-    digits : minimum number of digits of the whole degrees
+    `sides` are the letters for positive and negative angles. The degrees have at least `digits`
+    digits.
     """
     whole, minutes = divmod(round(abs(degrees) * 60_000), 60_000)
     return f"{whole:0{digits}d}° {minutes / 1000:06.3f}′ {sides[degrees < 0.0]}"
@@ -251,10 +246,7 @@ def degrees_text(degrees: float, sides: str, digits: int) -> str:
 def inputs_part(inputs: Sequence[tuple[str, MooringFile, Water]]) -> ReportPart:
     """Report the inputs: environments, mooring file, currents, hash and versions.
 
-    Parameters
-    ----------
-    inputs : name of the environment, file as read, and water; one entry for every environment of a
-        mooring, of a tow, or of each leg of a net
+    `inputs` has the name, file and water of each environment, for each leg of a net.
     """
     files = [file for _, file, _ in inputs]
     waters = list({name: water for name, _, water in reversed(inputs)}.items())[::-1]

@@ -37,10 +37,9 @@ def header() -> tuple[str, ...]:
 def to_csv(results: Sequence[Result]) -> str:
     """Write the components of one or several moorings or tows as CSV text.
 
-    The text is UTF-8, comma-separated, with decimal points and LF. The column `part` holds
-    ``component`` or ``clamp``. The row of a clamped instrument follows the row of the piece that
-    carries the instrument; it has equal values for both ends and no length. Unknown numbers are
-    empty. If a net is among the results, the last column holds the name of the leg.
+    The row of a clamped instrument follows the row of its piece. Such a row has equal values for
+    the upper and the lower end, and no length. Unknown numbers are empty. With a net, the last
+    column names the leg of the net. Lines end in LF.
     """
     rows = [row for result in results for row in _rows(result)]
     more = shown_in(OF_ROWS, Output.CSV)
@@ -70,10 +69,9 @@ _ACCURACY: dict[str, tuple[str, str, Attributes]] = {
 
 
 def result_netcdf(result: Result) -> bytes:
-    """Create the NetCDF file of one mooring, tow or net.
+    """Create the NetCDF file of one mooring, tow or net, in double precision.
 
-    Values are in double precision; unknown values are NaN. For a net, the ends are listed leg by
-    leg, and the nodes that describe the shapes of the legs are concatenated.
+    Unknown values are NaN. For a net, ends and shape nodes are listed leg by leg.
     """
     file, pieces, clamps = result.file, result.components, result.clamps
     place = () if file.position is None else (file.position.latitude, file.position.longitude)
@@ -141,8 +139,8 @@ UNITS = {"length": "m", "force": "N", "angle": "deg", "mass": "kg", "speed": "m/
 def to_json(documents: list[dict[str, Any]]) -> str:
     """Create JSON text: an object for one document, or an array for several documents.
 
-    Units are added to results, which are the documents with a key `calm`. Numbers that are not
-    finite become null. The text is plain ASCII, so that no terminal or pipe can corrupt it.
+    Documents with a key `calm` get a key `units`. Numbers that are not finite become null. The text
+    is ASCII.
     """
     with_units = [{**each, "units": UNITS} if "calm" in each else each for each in documents]
     content = with_units[0] if len(with_units) == 1 else with_units

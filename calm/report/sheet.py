@@ -1,6 +1,6 @@
 """Text report of a result: a summary, and a table of the line that marks values near limits.
 
-The report of a net consists of tables of the legs, the nodes and the loads at the ends.
+For a net, there are tables of legs, nodes and end loads.
 """
 
 import math
@@ -44,15 +44,10 @@ _TYPES = {"subsurface": "sub-surface mooring", "surface": "surface mooring"}
 def result_part(
     result: Result, facts: Sequence[tuple[str, str]] = (), *, verbose: bool = False
 ) -> ReportPart:
-    """Build the short report of a result, with long labels wrapped to fit 80 columns.
+    """Build the short report of a result, for a terminal of 80 columns.
 
-    Values beyond a limit are marked ``!`` and values close to a limit ``~``, so that colour is not
-    needed.
-
-    Parameters
-    ----------
-    facts : further facts about the line, which follow the summary
-    verbose : whether to include the accuracy and convergence of the solution
+    Values beyond a limit are marked ``!``, values close to a limit ``~``. `facts` are titles and
+    texts after the summary. `verbose` adds accuracy and convergence.
     """
     if result.several:
         return net_part(result, verbose=verbose)
@@ -231,8 +226,7 @@ def _level_text(result: LegResult, depth: float) -> str:
 def table_of_line(result: AnyResult, title: str = "", *, places: bool = False) -> Table:
     """Tabulate the line in file order; clamps are indented below their piece.
 
-    Each leg of a net has a heading. If `places` is true, the position of a clamp on its piece is
-    shown in place of a length.
+    If `places` is true, clamps show their position on the piece in the column of lengths.
     """
     output, of_an_end, heads = Output.MOORING_TABLE, "Depth, height and offset", {}
     if result.towed:
@@ -284,10 +278,9 @@ def tilt_state(component: Component, tilt: float) -> State | None:
 def safety_state(result: AnyResult, record: ComponentRow) -> State | None:
     """Return FAIL if the safety factor is too small or the working load is exceeded, else None.
 
-    The required factor on the breaking load depends on `checks.safety_factor`, on the material, and
-    on whether the mooring is a surface mooring. The working load of a synthetic rope counts only
-    without a breaking load, as in the rule `strength`. An unknown safety factor (NaN) is not a
-    failure.
+    The required factor depends on `checks.safety_factor`, material and type of mooring. For a
+    synthetic rope, the working load counts only if the breaking load is unknown. An unknown safety
+    factor (NaN) is not a failure.
     """
     # the intended purpose of a single leg is irrelevant if the whole net is shown
     alone = not (result.several or result.towed)

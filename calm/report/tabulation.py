@@ -103,12 +103,11 @@ def by_speed(
 
 
 def to_document(tabulation: Tabulation) -> dict[str, Any]:
-    """Return the JSON object of a table.
+    """Return the JSON object of a table, with one object per ship speed.
 
-    The keys are `calm`, `name`, `type` and `speeds`, a list with one object per speed. Such an
-    object has the keys `speed` and `status`, and the keys of `FIGURES` (SI and degrees), but
-    `frequency` only if the cable strums. The keys `warnings` or, without an equilibrium, `message`
-    and `advice` follow.
+    Each object has `speed`, `status` and the keys of `FIGURES` (SI and degrees). `frequency` is
+    absent unless the cable strums. Warnings or, without an equilibrium, `message` and `advice`
+    follow.
     """
     return {
         "calm": __version__,
@@ -145,8 +144,8 @@ def _row_document(tabulation: Tabulation, row: TabulationRow) -> dict[str, Any]:
 def tabulation_part(tabulation: Tabulation) -> ReportPart:
     """Build the table with one row per speed, within 80 columns.
 
-    A row without an equilibrium shows the status of the solver. A row with warnings that are not
-    common to all rows has a mark; common warnings follow the table.
+    Rows without an equilibrium show the status of the solver. Common warnings follow the table;
+    other warnings give a mark in their row.
     """
     speed = QUANTITIES["speed"]
     names = [name for name in FIGURES if name != "frequency" or tabulation.strumming]
@@ -197,10 +196,9 @@ _CURVE, _AT_BODY = Stroke(LINE_COLOUR, 1.4), Stroke(LINE_COLOUR, 1.2, (4.0, 2.0)
 
 
 def sweep_drawing(tabulation: Tabulation) -> str:
-    """Draw depth and layback of the towed body, and tensions, against the ship speed, as SVG.
+    """Draw body depth, layback and tensions against ship speed, as SVG.
 
-    The tensions are those at the tow point and at the body. A speed without an equilibrium leaves a
-    gap in the curves.
+    Tensions are at the tow point and at the body. Without an equilibrium, curves have gaps.
     """
     page = Graph(_WIDTH, _HEIGHT, tabulation.name, _SIZE)
     title = shortened(tabulation.name, _WIDTH - 12.0, 11.0, bold=True)

@@ -152,8 +152,8 @@ _BAR, _BEYOND = 10, 3  # characters of a bar up to the limit, and beyond it
 def bar_text(share: float, state: State | None) -> str:
     """Draw a fraction of a limit as a bar of text, with a mark at the limit.
 
-    Each character stands for a tenth of the limit; the number of characters is rounded up. The bar
-    is hatched if the fraction is above 1 but the state of the finding is not a failure.
+    Each character is a tenth of the limit. A bar beyond the limit is hatched if the finding is not
+    a failure.
     """
     tenths = min(ceil(_BAR * share - 1e-9), _BAR + _BEYOND)
     sign = "▒" if tenths > _BAR and state is not State.FAIL else "█"
@@ -187,13 +187,7 @@ Row = tuple[Sequence[Text], str]
 class PlainTable:
     """Table without ruled lines, printed as plain text.
 
-    Printing is many times faster than for a table of rich.
-
-    Parameters
-    ----------
-    table : table with columns but without rows
-    rows : rows to add
-    gap : number of blanks between columns
+    `table` is a rich table without rows, and `gap` the number of blanks between columns.
     """
 
     def __init__(self, table: table.Table, rows: Sequence[Row], gap: int) -> None:

@@ -23,16 +23,13 @@ _SMALL = 1e-3
 def verification_document(findings: Findings) -> dict[str, Any]:
     """Return the JSON object of a verification.
 
-    Values that agree by construction are not counted in `checked`. The keys are:
+    The keys are:
 
-    - `calm`: version of CALM
-    - `checked`: number of checked values
+    - `checked`: number of values that do not agree by construction
     - `kinds`: number of values of each kind
     - `out`: number of values out of tolerance
-    - `cases`: list with one object per value
-
-    The keys of a case are `source`, `name`, `kind`, `expected`, `got`, `difference`, `tolerance`,
-    `unit`, `why` (the reason for the tolerance), `within`, and `reason` if no value was computed.
+    - `cases`: one object per value, in which `why` is the reason for the tolerance and `reason`
+      explains a value that was not computed
     """
     cases = [
         _case_document(source, outcome) for source, outcomes in findings for outcome in outcomes
@@ -65,14 +62,13 @@ def verification_part(findings: Findings) -> ReportPart:
 
 
 def figures(outcome: CaseOutcome) -> tuple[str, ...]:
-    """Format the outcome of a case as a row, in the order of `COLUMNS`.
+    """Format the outcome of a verification case as a row, in the order of `COLUMNS`.
 
-    The computed value and the difference have one decimal place more than the tolerance, or two
-    more if the expected value has at least two more. Further digits are rounding errors that differ
-    between machines.
+    Computed values have one or two decimal places more than the tolerance.
     """
     case = outcome.case
     expected = f"{case.expected:.12g}"
+    # further digits are rounding errors that differ between machines
     decimals = max(0, 1 + ceil(-log10(case.tolerance)))
     decimals += len(expected.partition(".")[2]) > decimals
     return (

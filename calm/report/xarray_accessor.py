@@ -20,11 +20,10 @@ if TYPE_CHECKING:
 
 @xr.register_dataset_accessor("calm")  # type: ignore[no-untyped-call]
 class BatchAccessor:
-    """Access to the batch results of a part of the line, by the label of the part.
+    """Access to batch results by the label of a component or clamp in the mooring file.
 
-    Labels are as in the mooring file. The label ``top`` means the first component, even if another
-    part has that label. Data are loaded lazily. All methods raise UsageError if the line has no
-    part with the given label.
+    The label ``top`` always means the first component. All methods raise UsageError for an unknown
+    label.
 
     >>> dataset.calm.knockdown("adcp").max()  # doctest: +SKIP
     """
@@ -56,10 +55,10 @@ class BatchAccessor:
         return greater
 
     def plot_shape(self, *, time: str | np.datetime64, ax: Axes | None = None) -> Axes:
-        """Draw the line from the side, in the profile nearest to a given time, on matplotlib axes.
+        """Draw the line from the side on matplotlib axes, in the profile nearest to a given time.
 
-        If `ax` is None, a new figure is created. Raise UsageError if the profile has no
-        equilibrium, or if matplotlib is not installed.
+        Without `ax`, a new figure is created. Raise UsageError without an equilibrium or without
+        matplotlib.
         """
         axes = plot_elevation(shape_picture(self._dataset, time), ax)
         moment = when(_nearest(self._dataset, time)["time"].values)
@@ -83,9 +82,8 @@ def _nearest(dataset: xr.Dataset, time: str | np.datetime64) -> xr.Dataset:
 def shape_picture(dataset: xr.Dataset, time: str | np.datetime64) -> LinePicture:
     """Create the side view of the line in the profile nearest to a given time.
 
-    The picture is in the vertical plane through the anchor and the top of the line. The line is
-    drawn straight between the upper ends of successive components. Raise UsageError if the profile
-    has no equilibrium.
+    The view is in the vertical plane through anchor and top, with straight lines between component
+    ends. Raise UsageError if the profile has no equilibrium.
     """
     row = _nearest(dataset, time)
     names = ("depth_top", "x_top", "y_top")

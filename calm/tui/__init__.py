@@ -1,4 +1,4 @@
-"""Line builder in the terminal: its screens and widgets.
+"""Line builder in the terminal: screens and widgets.
 
-The module `live` solves and judges the line while it is edited.
+The module `live` solves and checks the line while the user edits.
 """

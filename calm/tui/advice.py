@@ -29,14 +29,10 @@ _GRAVE = (State.FAIL, State.WARN)
 
 @dataclass(frozen=True)
 class Offer:
-    """A suggested change.
+    """A suggested change, with its effect (`title`) and its name in the history (`label`).
 
-    Attributes
-    ----------
-    title : purpose and effect of the change
-    label : name of the change in the history
-    make : function that applies the change to a draft and returns the new draft. The function may
-        solve the line to find a value, and raises `CalmError` if the change does not help.
+    `make` applies the change to a draft, and may solve the line. `make` raises `CalmError` if the
+    change does not help.
     """
 
     title: str
@@ -56,13 +52,8 @@ def single(view: View) -> LegResult | None:
 def offers(view: View, catalogue: Catalogue, catalogs: Sequence[str | Path] = ()) -> list[Offer]:
     """Suggest changes that remove failures and warnings of a line, in order of severity.
 
-    If the line has no anchor or needs a heavier anchor, the line is solved in every environment and
-    situation.
-
-    Parameters
-    ----------
-    catalogue : components from which an anchor is chosen
-    catalogs : catalogue files of the user, needed to read the line in its other environments
+    Anchor suggestions need a solution in every environment and situation. `catalogs` are catalogue
+    files of the user.
     """
     anchors = [*_anchors(view, catalogue, catalogs)] if _needs_new_anchor(view) else []
     grave = sorted((e for e in view.findings if e.state in _GRAVE), key=lambda each: each.rank)
@@ -96,15 +87,8 @@ def _is_of_anchor(finding: Finding) -> bool:
 def sized(mooring: Design, target: str, change: str) -> Offer:
     """Return an offer to change a quantity by the smallest amount that meets a target.
 
-    Parameters
-    ----------
-    target : condition to meet, in the syntax of `calm size`
-    change : quantity to change, in the syntax of `calm size`
-
-    Raises
-    ------
-    UsageError
-        The target or the change is invalid.
+    The target and the change are in the syntax of `calm size`. Raise UsageError if the target or
+    the change is invalid.
     """
     adjustment = parse_change(change, mooring.file)
     targets.parse_target(target, mooring.file)

@@ -37,27 +37,18 @@ _COLOURLESS = NoColor()
 class BuildApp(App[int]):
     """The line builder.
 
-    Keys, pastes and mouse presses are handled one after the other, so that a screen opened by a key
-    is open before the next key is handled. Otherwise, keys that are typed ahead, or that arrive
-    together over a slow connection, would go to the widget that has the focus on their arrival. For
-    example, they would go to the line instead of the field that the first key opens.
-
-    A key counts as handled once all message queues that the key may have filled are empty. To wait
-    for this, the application posts a call to each of these queues in turn. A queue is handled in
-    order, so the call runs only when its widget has handled the key. A second round of calls waits
-    for messages that the widgets sent to each other. Rounds are repeated until all queues are
-    empty.
+    Keys, pastes and mouse presses are handled one after the other, even if typed ahead. A screen
+    opened by a key is thus open before the next key is handled. A key is handled once all message
+    queues that the key may have filled are empty.
 
     Parameters
     ----------
-    session : editing session of the file
-    kept : unsaved work of an earlier session; at the start, the user is asked whether to recover it
+    kept : unsaved work of an earlier session, which the user may recover at the start
     environ : environment variables that describe the terminal
 
     Attributes
     ----------
     not_kept : reason why unsaved work could not be backed up on exit; empty without a failure
-    has_keys_waiting : whether any key has not been handled yet
     """
 
     TITLE = "calm build"
@@ -127,6 +118,8 @@ class BuildApp(App[int]):
         return list(dict.fromkeys([*around, *lists, *self.screen_stack[-1:], self]))
 
     def _wait_for_listeners(self, listeners: list[MessagePump]) -> None:
+        # A queue is handled in order, so the posted call runs after the key. A second round waits
+        # for messages that widgets sent to each other.
         while listeners:
             first, *others = listeners
             if first.call_later(self._wait_for_listeners, others):  # false for a removed widget
@@ -307,10 +300,7 @@ class BuildApp(App[int]):
     # unsaved work, and the exit
 
     def keep(self) -> str:
-        """Save a backup copy of unsaved work.
-
-        Return the reason if this fails, otherwise "".
-        """
+        """Save a backup copy of unsaved work. Return the reason for a failure, otherwise ""."""
         try:
             self.session.note_unsaved().keep()
         except (CalmError, OSError) as error:

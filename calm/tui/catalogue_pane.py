@@ -68,14 +68,9 @@ class ComponentList(TableCells, can_focus=False):
         by: str | None = None,
         favourites: frozenset[str] = frozenset(),
     ) -> None:
-        """List components, and move the cursor to the first component.
+        """List components in the given order, and move the cursor to the first component.
 
-        Parameters
-        ----------
-        found : components to list, in display order
-        index : search index of the catalogue
-        by : quantity whose column must be visible
-        favourites : ids of the favourite components
+        `by` is a quantity whose column must be visible. `favourites` are component ids.
         """
         before, columns = self.rows, self.columns
         cursor, like = self.cursor, (self._index, self._favourites)
@@ -148,14 +143,8 @@ _TITLES = {
 class CataloguePane(Vertical):
     """Pane with a search field, the components found, and the card of the chosen component.
 
-    The pane requests the length of a new cable or chain, and the position of a new clamp.
-
-    Parameters
-    ----------
-    workspace : workspace that provides the catalogue
-    take : function that receives the purpose of the search, and the keys of the row: `use`,
-        `length`, `at` and `label`
-    close : function that returns to the line
+    The pane also asks for the length of a new cable and the position of a new clamp. `take`
+    receives the purpose of the search and the keys of the row; `close` returns to the line.
     """
 
     BINDINGS = key_table.bindings("catalogue")
@@ -218,15 +207,11 @@ class CataloguePane(Vertical):
     def open(
         self, purpose: Purpose, target: str, role: str = "", *, clampable: bool = False
     ) -> None:
-        """Open the search for a component.
+        """Open the search for a component, with favourites first.
 
-        Favourites are listed first. Until the user types words, the favourites are followed by
-        components with the given role, recent components, and components of the line.
-
-        Parameters
-        ----------
-        target : name of the row next to which the component is added; "" in an empty line
-        clampable : whether to list only components that can be clamped on
+        Until the user types, components with the given role, recent components and components of
+        the line follow. `target` is the name of the row next to which the component is added.
+        `clampable` limits the list to components that can be clamped on.
         """
         self.purpose, self.clampable, self._role = purpose, clampable, role
         self.retitle(target)

@@ -62,12 +62,8 @@ class EditableTable(Vertical):
     ) -> None:
         """Edit the cell under the cursor.
 
-        Parameters
-        ----------
-        text : initial text
-        check : function that checks the typed text
-        least_width : minimum width of the editor [cells]
-        begun : whether the initial text was just typed by the user
+        `check` checks the typed text. `least_width` is in cells. If `begun` is true, the user has
+        just typed the initial text.
         """
         region, editor = self.table.cell_region(), self.editor
         editor.styles.offset = region.offset

@@ -1,4 +1,4 @@
-"""Checks of typed text at each key press: accept it, complete its unit, or reject it."""
+"""Checks of typed text at each key press, which accept, complete or reject the text."""
 
 import re
 from collections.abc import Callable, Mapping, Sequence
@@ -21,9 +21,9 @@ class Reading:
     Attributes
     ----------
     text : text to write, with a missing unit added
-    complaint : reason why the text is invalid; empty if the text is valid
+    complaint : reason why the text is invalid, if any
     offer : corrected text, if known
-    explained : meaning of a valid text, unless the meaning is obvious
+    explained : meaning of a valid text, unless obvious
     """
 
     text: str
@@ -162,9 +162,8 @@ def distance(before: str = "") -> Check:
 def length(before: str = "", *, towed: bool = False) -> Check:
     """Return a check for the length of a piece.
 
-    The text is a length, a length with the load at which the length was measured
-    (``98 m at 2 kN``), or ``fit`` with the required depth of the top (if `towed`, of the lower
-    end). A bare number gets the unit of the previous text, `before`.
+    Valid texts are a length, a length under load (``98 m at 2 kN``), or ``fit`` with the depth of
+    the top (of the lower end if `towed`). A bare number gets the unit of `before`.
     """
     plain = quantity(POSITIVE_LENGTH, usual_unit=unit_of(before))
     depth = quantity(QuantityField("length") if towed else LENGTH, usual_unit=unit_of(before))

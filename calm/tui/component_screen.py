@@ -31,9 +31,7 @@ class ComponentScreen(dialogs.Form[Defined]):
 
     Parameters
     ----------
-    listed : ids in the catalogue; a component defined in the file overrides the catalogue component
-        with the same id
-    own : ids that the file already defines, which cannot be used again
+    listed, own : ids in the catalogue, and ids of the file, which cannot be used again
     begun : id and all keys of the component to change; None for a new component
     """
 

@@ -75,12 +75,8 @@ def all_settled(fields: Iterable[Part]) -> bool:
 class Field(Horizontal):
     """Field of a form, with a name, a text input, and a note.
 
-    Each widget takes time to start, and a form may have dozens of fields. The field therefore
-    contains one widget, the input, and draws the name and the note into the margins of the input.
-
-    When the user presses Enter or leaves the field, the field posts `Committed` if its text is
-    valid and differs from the initial text. An invalid text stays in the field, is marked, and is
-    not committed.
+    When the user presses Enter or leaves the field, a valid, changed text is posted as `Committed`.
+    An invalid text stays in the field and is marked.
     """
 
     SCOPED_CSS = False  # styles depend on the width of the screen
@@ -123,6 +119,7 @@ class Field(Horizontal):
         )
 
     def compose(self) -> ComposeResult:
+        # the only widget: each widget takes time to start, and a form may have dozens of fields
         yield self.input
 
     def render(self) -> Content:

@@ -1,7 +1,4 @@
-"""Forms for sections of a mooring file.
-
-The fields of a form are created from the keys of a pydantic model. Values of the file are converted
-to text and back.
+"""Forms for sections of a mooring file, created from the keys of pydantic models.
 
 A structured value is typed as YAML in brackets, such as `[98 m, 104 m]`. A list of rows is edited
 as a table, whose text is also YAML.
@@ -46,11 +43,10 @@ class FormField:
 
     Attributes
     ----------
-    key : name of the field; if the field edits a key of the file, the path of the key, such as
-        `position.latitude`
+    key : name of the field, or path of the edited key of the file, such as `position.latitude`
     takes : description shown next to the field
     above : heading of a group that begins with this field
-    columns : table columns, if the field is a table; `text` then contains the rows
+    columns : columns of a table, whose rows are in `text`
     is_needed : whether the model requires this key
     """
 
@@ -68,10 +64,8 @@ class FormField:
 def form_of(model: type[BaseModel], at: str = "", *, needed: bool = True) -> list[FormField]:
     """Create the form fields of a pydantic model, with required keys first and nested models last.
 
-    Parameters
-    ----------
-    at : path of the model in the file, such as `deployed.`
-    needed : whether the model is required; if not, required keys of the model may be blank
+    `at` is the path of the model in the file, such as `deployed.`. Unless the model is `needed`,
+    required keys may be blank.
     """
     model.model_rebuild()  # resolves forward references
     own: list[FormField] = []

@@ -27,11 +27,9 @@ class Action:
     place : widget or screen in which the keys work
     name : name of the method, without ``action_``, with its arguments
     keys : keys in Textual's notation, separated by commas; the first is displayed
-    title : two or three words, for the palette and the key bar
-    meaning : a sentence for the help
-    hint : rank in the key bar, from 0; None if the key bar does not show the action
-    palette : whether the command palette lists the action; only actions of the line and of the main
-        screen can be listed
+    title, meaning : short name, and sentence for the help
+    hint : rank in the key bar, from 0; None if not in the key bar
+    palette : whether the command palette may list the action
     """
 
     place: str

@@ -49,9 +49,10 @@ class LinePane(LineSearch):
         return not self.editor.is_open and (bool(self.table.rows) or action not in _FROM_A_ROW)
 
     def show_rows(self) -> None:
-        """Show the rows of the draft, with the results or mistakes of the latest view.
+        """Show the rows of the draft, with the latest results or mistakes.
 
-        If the latest view has neither, show the results of the latest view with an equilibrium.
+        If there are neither results nor mistakes, show the results of the last draft with an
+        equilibrium.
         """
         workspace, view = self.workspace, self.workspace.view
         workspace.refresh_index()

@@ -43,9 +43,8 @@ def table_rows(
 ) -> list[TableRow]:
     """Return the rows of the line table, one for each item and clamp.
 
-    An item of several pieces shows, in each column, the least favourable value of these pieces. If
-    `view` was computed from an earlier text, a row shows values only if its component and label are
-    the same as in that text. Rows that were `added` after that text show no values.
+    An item of several pieces shows the least favourable values. Results for an earlier text are
+    shown only in rows with unchanged component and label, and never in `added` rows.
     """
     found = _results_by_row(draft, view, added)
     wrong = _items_with_mistakes(draft, view)

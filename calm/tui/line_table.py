@@ -112,7 +112,7 @@ class LineTable(TableCells, can_focus=True):
         return (self.spot,) if self.spot else ()
 
     def show_rows(self, rows: Sequence[TableRow], *, old: bool = False) -> None:
-        """Replace the rows; values of an earlier draft (`old`) are dimmed."""
+        """Replace the rows; dim values that were computed from an earlier draft (`old`)."""
         self.old = old
         self._arranged = (-1, self._arranged[1])
         self.marked &= {row.spot for row in rows}
@@ -196,13 +196,8 @@ LEAD = 4
 class TableRow:
     """Displayed row of a piece or a clamp.
 
-    Attributes
-    ----------
-    spot : position in the line
-    sign : symbol for the role of the component
-    texts : text of each cell, by column name
-    state : most severe state of the findings on the row
-    wrong : whether the component is unknown
+    `spot` is the position in the line, `sign` the symbol for the role. `texts` are by column name.
+    `state` is the most severe state of the findings. `wrong` is true if the component is unknown.
     """
 
     spot: Place
@@ -226,10 +221,7 @@ def layout_for(
     Parameters
     ----------
     width : width of the table [cells]
-    component, label : width of the longest text in the column [cells]; the two columns share the
-        width that the other columns leave
-    length : width of the longest text in the length column [cells]
-    leg : width of the longest name of a leg in a net [cells]; 0 for a single line
+    component, label, length, leg : longest text in the column [cells]; `leg` is 0 except for a net
     planned : whether any row has a planned depth
     """
     heads = {name: "n" if name == "count" else name for name in ("leg", *EDITABLE)}

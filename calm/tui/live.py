@@ -49,23 +49,20 @@ class View:
 
     Attributes
     ----------
-    text, path, environment : text that was checked, path of its file, and environment used
     problems : mistakes in the text; a text with mistakes has no solution
     missing : names of missing parts of the line
-    file : the parsed file; None if the text has mistakes, or if a part other than an anchor or a
-        float is missing. A line without an anchor is solved with an anchor that holds any load.
-    result : the solution, or None
-    failure : reason why the line has no equilibrium, or None
+    file : parsed file; None if the text has mistakes or the line is incomplete. A missing anchor is
+        replaced by an anchor that holds any load.
+    failure : reason why the line has no equilibrium
     findings : findings of the design check; empty for a tow
-    tighter : findings in other situations in which the utilisation is higher than in `findings`
+    tighter : findings in other situations with a higher utilisation than in `findings`
     environments : names of the environments besides the default environment
     rows : results of each piece and clamp in file order; clamps follow their piece
-    complete : whether `findings` has all findings of `calm check` (see `judge_fully`); also true
-        for a solved tow, which has no findings
-    cases : results in each environment; empty before the full check
+    complete : whether `findings` has all findings of `calm check`; true for a solved tow
+    cases : results in each environment, after the full check
     elsewhere : mistakes in other environments
-    held : for a line without an anchor, solutions in every environment and situation
-    memory : previous solutions, which are reused for the next text
+    held : solutions in every environment and situation, for a line without an anchor
+    memory : previous solutions, for reuse
     """
 
     text: str
@@ -113,24 +110,17 @@ def judge(
     catalogs: Sequence[str | Path] = (),
     keep: View | None = None,
 ) -> View:
-    """Solve the line that a text describes, and apply the design rules to its equilibrium.
+    """Solve the line in the text of a file, and apply the design rules to its equilibrium.
 
-    The function may be called in any thread.
+    The view has the results of `calm run`, and the findings of `calm check` for the situation as
+    given. The function may be called in any thread, and raises no exception.
 
     Parameters
     ----------
-    text : text of a mooring or tow file
-    path : path of the file, needed to resolve relative file names; None if there is no file
-    environment : name of an environment in the file, or path of an environment file; None for the
-        default environment
+    path : path of the file, for relative file names
+    environment : name of an environment in the file, or path of an environment file
     catalogs : catalogue files of the user
-    keep : an earlier view of the same file; its solutions are reused if they still apply
-
-    Returns
-    -------
-    View
-        The results of `calm run` and the findings of `calm check` for the situation as given. No
-        exception is raised, whatever the text contains.
+    keep : earlier view of the same file, whose solutions are reused
     """
     memory = Memory() if keep is None else keep.memory
     view = View(text, _as_path(path), environment, memory=memory)
@@ -150,9 +140,8 @@ def _as_path(path: str | Path | None) -> Path:
 def judge_fully(view: View, catalogs: Sequence[str | Path] = ()) -> View:
     """Return a view with the complete findings of `calm check`.
 
-    The check covers every environment and situation, waves, launch, recovery and breaks. For a tow
-    or a line without equilibrium, the view is returned unchanged. A line without an anchor is
-    solved in every environment and situation, but not checked.
+    A tow or a line without equilibrium gives an unchanged view. A line without an anchor is not
+    checked, but solved in every environment and situation.
     """
     if view.complete or view.result is None or view.result.towed:
         return view
@@ -183,7 +172,7 @@ class HeldLine:
     def needed(self, anchor: Anchor) -> float:
         """Return the weight in water that a given anchor must have in this situation [N].
 
-        This weight depends on the friction coefficient of the anchor.
+        The weight depends on the friction coefficient of the anchor.
         """
         load, file = self.result.anchor_load, _with_anchor(self.result.file, anchor)
         factor = file.checks.anchor_factor
@@ -321,12 +310,11 @@ class FoundRow:
 
     Attributes
     ----------
-    place : position of the piece or instrument in the parsed file
-    label : label of the piece or instrument in results
-    length : cut length [m]; None for a clamp, and for a fitted length that is not solved yet
-    figures : values in the columns of the line table, by column name; empty without a solution
-    use : maximum utilisation in the findings on the row, or None if unknown
-    state : most severe state of the findings on the row, or None if there are no findings
+    place : position in the parsed file
+    length : cut length [m]; None for a clamp or an unsolved fitted length
+    figures : values in the columns of the line table, by column name
+    use : maximum utilisation in the findings, if known
+    state : most severe state of the findings, if any
     lacks_strength : whether a value needed for the strength rule is missing
     """
 

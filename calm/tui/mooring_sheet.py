@@ -60,10 +60,8 @@ def settings() -> list[str]:
 def sheet_of(name: str, draft: Draft, part: Piece | Clamp | None) -> Sheet:
     """Create a sheet that shows the values in the file.
 
-    Parameters
-    ----------
-    name : name of a sheet in `SHEETS`, or of a section from `settings`
-    part : piece or clamp of the row under the cursor
+    `name` is a sheet in `SHEETS` or a section from `settings`; `part` is in the row under the
+    cursor.
     """
     fields = MooringKeys.model_fields
     title, keys = SHEETS.get(name, (name.capitalize(), (name,)))
@@ -166,12 +164,9 @@ def serial_of_equipment(text: str) -> Reading:
 
 
 def entry_text(draft: Draft, rows: Location, called: tuple[str, str], key: str) -> str:
-    """Return the text of a key in a list entry of the file, or "" if there is no such entry.
+    """Return the text of a key in an entry of a list in the file, or "" without an entry.
 
-    Parameters
-    ----------
-    rows : path of the list
-    called : key and text that identify the entry
+    `rows` is the path of the list. `called` is the key and text that identify the entry.
     """
     index = _index(draft, rows, called)
     return "" if index is None else draft.text_at((*rows, index, key))
@@ -241,13 +236,11 @@ class Missing:
 
     Attributes
     ----------
-    use, kind : id and kind of the component
-    labels : labels of the pieces and clamps concerned, as keys of a dict
-    targets : locations in the file to which each missing value is written, by key. If the file
-        defines the component, the location is this definition. Otherwise the locations are all rows
-        that lack the value; for a part of an assembly, this is the row of the assembly. Rows that
-        cannot hold the value are omitted.
-    estimates : estimates for the class of component, by key, as texts without their source
+    labels : labels of the pieces and clamps concerned
+    targets : locations in the file to which each missing value is written, by key. The location is
+        the definition of the component in the file. Without a definition, the locations are all
+        rows that lack the value. A part of an assembly has the row of the assembly.
+    estimates : estimates for the class of component, by key, without their source
     """
 
     use: str
@@ -310,16 +303,8 @@ def with_figures(
 ) -> Draft:
     """Write the entered component values to the file, and return the new draft.
 
-    Parameters
-    ----------
-    missing : missing values, with their locations in the file
-    texts : entered texts by ``component.key``; an empty text leaves a value unknown
-    source : source of all values; may be empty
-
-    Raises
-    ------
-    EditError
-        The file does not allow the change.
+    The keys of `texts` are ``component.key``. An empty text leaves a value unknown. Raise EditError
+    if the file does not allow the change.
     """
     for each in missing:
         for key, targets in each.targets.items():

@@ -73,14 +73,9 @@ def labels_of(draft: Draft) -> dict[Place, list[str]]:
 
 
 def followed(before: Draft, after: Draft, moved: Mapping[Place, Place]) -> tuple[Draft, list[str]]:
-    """Update the references to labels after an edit.
+    """Update the references to labels after an edit; also return messages on the updates.
 
-    Return the updated draft, and messages about the updates.
-
-    Parameters
-    ----------
-    before, after : the file before and after the edit
-    moved : new positions of the remaining rows, by old position
+    `moved` maps the old positions of the remaining rows to the new positions.
     """
     names = list(named_in(after))
     old, new = labels_of(before), labels_of(after)
@@ -143,10 +138,7 @@ def with_extended_acceptances(draft: Draft, named: Iterable[Named]) -> Draft:
 class EnvironmentChoice:
     """Environment chosen for a line: the default, a named environment, or an environment file.
 
-    Parameters
-    ----------
-    history : history of the file
-    environment : name of an environment, or an environment file; None for the default
+    `environment` is a name or a file; None for the default.
     """
 
     def __init__(self, history: History, environment: str | None) -> None:

@@ -1,7 +1,7 @@
 """Terminal driver that sends only changed cells, at the pace of the terminal.
 
-Textual sends a whole region again if one of its cells may have changed, and the whole screen after
-a change of size, which is 38 kB for 140 columns and 45 rows.
+Textual itself sends whole regions, or after a change of size the whole screen (38 kB for 140 by 45
+cells).
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ class Painted:
         self._touched.update(range(len(self._wanted)))
 
     def take(self, text: str) -> str:
-        """Store the cells of an output text, and return the rest, which must be sent at once."""
+        """Store the cells of an output text; return other output, which must be sent at once."""
         text = self._rest + text
         cut = _INCOMPLETE.search(text)
         self._rest = text[cut.start() :] if cut else ""
@@ -137,9 +137,8 @@ class Painted:
 class Pace:
     """Flow control that delays each frame until the terminal has displayed the previous frame.
 
-    After each frame, the cursor position is requested; the answer shows that the frame is
-    displayed. Over a slow connection, several frames thus merge into one. If the terminal has never
-    answered, frames do not wait.
+    The terminal answers a request at the end of each frame. Frames do not wait for a terminal that
+    has never answered.
     """
 
     def __init__(self) -> None:
@@ -184,7 +183,7 @@ class TerminalOutput:
         return type(f"Painting{terminal.__name__}", (_PaintingDriver, terminal), {"output": self})
 
     def take(self, text: str, send: Callable[[str], None]) -> None:
-        """Store the cells of an output text, and send the rest of the text at once."""
+        """Store the cells of an output text; send other output at once."""
         with self._lock:
             self._send = send
             if at_once := self._painted.take(text):
@@ -269,7 +268,7 @@ _SEEN_ON_BLANKS = {"4", "7", "9", "21", "53"}
 def _ground(style: str) -> str:
     """Return the part of a style that is visible on blank cells.
 
-    This is the background or, for underlined and similar styles, the whole style.
+    The visible part is the background or, for underlined and similar styles, the whole style.
     """
     kept, codes = [], iter(style.split(";"))
     for code in codes:

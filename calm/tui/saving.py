@@ -27,16 +27,10 @@ _READ_AGAIN = "Reloaded: the file was changed by another program"
 
 
 class Saving:
-    """Saver of the file of a workspace.
+    """Saver of the file of a workspace, which detects changes by other programs.
 
-    The user is asked before a file is overwritten. Changes by other programs are detected.
-
-    Parameters
-    ----------
-    app : application on whose screen questions appear
-    workspace : workspace whose file is saved
-    show_replaced_draft : function that shows a text that has replaced the draft, with a message
-    leave : function that ends the application
+    Questions appear on the screen of `app`. `show_replaced_draft` shows a new text and a message.
+    `leave` ends the application.
     """
 
     def __init__(
@@ -179,9 +173,9 @@ class Saving:
     # work of an earlier run
 
     def offer(self, kept: editing.KeptWork, go_on: Callable[[], object]) -> None:
-        """Offer to recover unsaved work; show when it was stored, and whether the file is newer.
+        """Offer to recover unsaved work; show the time of the work, and whether the file is newer.
 
-        The user must confirm discarding the work, because this cannot be undone.
+        The user must confirm discarding the work, because discarding cannot be undone.
         """
         app, session, keeper = self._app, self._session, kept.keeper
 

@@ -119,7 +119,7 @@ class TitleBar(Widget):
         self._texts = "", "", False
 
     def show(self, left: str, right: str, *, old: bool = False) -> None:
-        """Replace both texts; `old` dims the right text."""
+        """Replace the left and the right text; `old` dims the right text."""
         if (left, right, old) != self._texts:
             self._texts = left, right, old
             self.refresh()

@@ -1,7 +1,7 @@
 """Scrollable widgets of fixed size: rows, texts, and tables with a cursor.
 
-If the size of a widget changes, Textual computes the layout of the whole screen again, which takes
-10 to 20 ms at each key of a search. The size of these widgets is independent of their content.
+The size does not depend on the content, because a new size costs a new layout of the screen (10 to
+20 ms).
 """
 
 from collections.abc import Iterable, Sequence
@@ -150,8 +150,8 @@ class TableColumn:
 class TableCells(Scrolled, inherit_bindings=False):
     """Table with a fixed heading, in which a cursor moves from cell to cell.
 
-    Subclasses define the `columns`, the columns that the cursor can enter (`editable`), the text of
-    each cell, and the texts in front of rows and below the table.
+    Subclasses define the columns, the editable columns, the texts of the cells, and the text in
+    front of each row.
     """
 
     COMPONENT_CLASSES: ClassVar[set[str]] = {"table--heading", "table--cursor"}
@@ -251,7 +251,7 @@ class TableCells(Scrolled, inherit_bindings=False):
             self.refresh_line(number + self.HEADING)
 
     def follow(self) -> bool:
-        """Scroll to make the cursor visible; return whether this was necessary."""
+        """Scroll to make the cursor visible; return whether scrolling was necessary."""
         page = max(self.scrollable_content_region.height - self.HEADING, 1)
         beyond = min(self.BEYOND, (page - 1) // 2)
         top = self.scroll_offset.y

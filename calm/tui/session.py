@@ -19,12 +19,6 @@ _OF_THE_ROW = frozenset({"use", "label", "count", "at", "clamps"})
 class Session:
     """Editing session of a mooring or tow file.
 
-    Parameters
-    ----------
-    file : the file on the disk
-    text : text of the file
-    environment : see `EnvironmentChoice`
-
     Attributes
     ----------
     catalogs : catalogue files given on the command line
@@ -32,13 +26,12 @@ class Session:
     choice : choice of the environment in which the line is solved
     after_save : function called with the path and text of a saved file
     added : rows added by the last change
-    followed : messages about the references to labels that were updated in the last change
+    followed : messages on references to labels that the last change updated
 
     Raises
     ------
     EditError
-        Raised by every operation that the text does not allow, because the text has mistakes or a
-        structure that cannot be edited. The text then stays unchanged.
+        Raised by every operation that the text does not allow; the text then stays unchanged.
     NotWritten
         Raised by `save` and `save_as` if the file cannot be written.
     """
@@ -194,7 +187,7 @@ class Session:
     def duplicate(
         self, spots: Iterable[Place], also: Sequence[Named] = (), times: int = 1
     ) -> Place | None:
-        """Insert copies of rows below the last of these rows, and return the first copy.
+        """Insert copies of rows below the last of the rows, and return the first copy.
 
         The references in `also` are extended to the copies.
         """
@@ -221,8 +214,7 @@ class Session:
     def move(self, spots: Iterable[Place], by: int) -> tuple[Place, ...]:
         """Move pieces or a single clamp up (-1) or down (1), and return their new rows.
 
-        Nothing moves if a piece would move beyond the end of the line, or a clamp beyond the first
-        or last clamp on its piece.
+        Nothing moves beyond the end of the line, or of the clamps of a piece.
         """
         chosen = _whole(spots)
         moved = [spot for spot in chosen if not spot.is_clamp] or chosen
@@ -257,10 +249,10 @@ class Session:
         return len(self.copied) if chosen else 0
 
     def paste(self, spot: Place | None, *, below: bool) -> Place | None:
-        """Paste the copied rows next to a row.
+        """Paste the copied rows next to a row of the line.
 
-        Return the last pasted row if the rows are pasted below, and the first pasted row if they
-        are pasted above. Return None if the clipboard is empty.
+        Return the last pasted row if pasted below, the first if pasted above, and None if nothing
+        was copied.
         """
         count = len(self.copied)
         label = f"paste {count} row{'s' * (count != 1)}"

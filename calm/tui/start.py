@@ -29,15 +29,8 @@ def open_session(
 ) -> tuple[Session, KeptWork | None]:
     """Open a session for a file, and return it with any unsaved work of an earlier session.
 
-    Parameters
-    ----------
-    path : a file that need not exist yet; None for an unnamed file
-
-    Raises
-    ------
-    InputError, UsageError
-        The file, an environment file or a catalogue cannot be read, the folder of a new file does
-        not exist, or the file has no such environment.
+    The file need not exist; `path` is None for an unnamed file. Raise InputError or UsageError if a
+    file cannot be read, a folder is missing, or the environment is unknown.
     """
     file = WorkingFile(path)
     if path is not None and file.stamp is not None:
@@ -85,7 +78,7 @@ def build(path: Path | None, environment: str | None = None, catalogs: Sequence[
     InputError, UsageError
         The file cannot be opened.
     NotWritten
-        Unsaved work could not be kept at the end of the session.
+        Unsaved work could not be kept on exit.
     """
     from calm.tui.app import BuildApp
 
@@ -104,8 +97,7 @@ def build(path: Path | None, environment: str | None = None, catalogs: Sequence[
 def end(app: BuildApp, number: int, _frame: object) -> None:
     """Keep unsaved work and quit, after a signal that ends the terminal or the process.
 
-    The function does not wait for the event loop, which may wait forever for a closed terminal. A
-    closed terminal need not be restored, so the process then ends at once.
+    If the terminal is closed, the process ends without waiting for the event loop, which may hang.
     """
     try:
         app.take_typed()

@@ -91,12 +91,8 @@ class GridCells(TableCells, can_focus=True):
 class Grid(cell_editor.EditableTable):
     """Table with editable cells and rows.
 
-    The cells contain texts as written in the file. A table without columns is empty and cannot be
-    edited.
-
-    Parameters
-    ----------
-    changed : function called after the rows change, with the table and a label for the change
+    Cells contain texts as in the file. A table without columns cannot be edited. `changed` is
+    called after a change, with the table and a label.
     """
 
     BINDINGS = key_table.bindings("grid")

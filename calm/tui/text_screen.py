@@ -128,7 +128,7 @@ class TextScreen(screen.DraftScreen):
         return retyped(self._begun, self.text_area.document.lines)
 
     def show_draft(self) -> None:
-        """Load the draft again, with the cursor on the same line."""
+        """Load the draft again, without moving the cursor to another line."""
         area, text = self.text_area, self.session.draft.text
         self._begun, self._edited, self._next = text, False, 0
         row, column = area.cursor_location

@@ -75,9 +75,8 @@ PICTURE_LIGHT = _palette(
 def choose_theme(environ: Mapping[str, str]) -> str:
     """Choose the theme for a terminal, and return its name.
 
-    A terminal with 256 colours or more gets the colours of the builder. Any other terminal keeps
-    its own sixteen colours, which the user has chosen to be legible. The background counts as light
-    if the last field of `COLORFGBG`, which many terminals set, is a light colour.
+    A terminal with fewer than 256 colours keeps its own sixteen colours. The background counts as
+    light if the last field of the variable `COLORFGBG` is a light colour.
     """
     announced = (environ.get("COLORTERM"), environ.get("TEXTUAL_COLOR_SYSTEM"))
     many = "256" in environ.get("TERM", "") or not _MANY.isdisjoint(announced)
@@ -101,10 +100,8 @@ A terminal with eight colours lacks the bright ones, and also keeps its own colo
 class Legible(LineFilter):
     """Line filter that makes text legible on any background of a theme or a picture.
 
-    Parameters
-    ----------
-    dark : whether the background of the terminal is dark
-    sixteen : whether the terminal's own colours are used, so that the exact background is unknown
+    `dark` describes the background. With `sixteen`, the terminal uses its own colours, and the
+    exact background is unknown.
     """
 
     def __init__(self, *, dark: bool, sixteen: bool) -> None:
@@ -129,10 +126,8 @@ class Legible(LineFilter):
 
 @lru_cache(4)
 def legible(dark: bool, sixteen: bool) -> Legible:
-    """Return the filter for a dark or light background.
-
-    Each filter is created only once, because Textual caches the filtered lines by filter.
-    """
+    """Return the filter for a dark or light background, always the same object."""
+    # cached, because Textual caches the filtered lines by filter
     return Legible(dark=dark, sixteen=sixteen)
 
 

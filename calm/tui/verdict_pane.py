@@ -28,9 +28,7 @@ _CHOSEN = Style(reverse=True)
 class VerdictPane(scrolled.ScrolledText, can_focus=True):
     """Pane that shows the verdict, values at the anchor and the top, and findings with reasons.
 
-    Parameters
-    ----------
-    go_to : function called with the rows and the text of a chosen line, or with () to go back
+    `go_to` is called with the rows and text of a chosen line, or with () to go back.
     """
 
     BINDINGS = key_table.bindings("verdict")

@@ -27,8 +27,6 @@ class VerdictLine:
 
     Attributes
     ----------
-    text : text of the line
-    heading : heading in front of the text; may be empty
     state : state that determines the symbol and the colour, or None
     faint : whether the text is dimmed
     pending : whether the state may still change
@@ -191,8 +189,8 @@ def _anchor_weight_line(
 ) -> VerdictLine:
     """Return the verdict line on the required and the actual anchor weight.
 
-    Without an anchor, only the required weight is given: the maximum over all situations, once
-    they are solved.
+    Without an anchor, the line gives only the required weight. The required weight is the maximum
+    over all situations, once the situations are solved.
     """
     if worst is None:
         needed, when = result.anchor_load.required_weight, ""

@@ -51,17 +51,9 @@ Place = tuple[str, ...]
 
 
 class WaterForm:
-    """Access to one environment in a file.
+    """Access to one environment in a file; None as `variant` is the default environment.
 
-    Parameters
-    ----------
-    draft : draft of the file
-    variant : name of an environment, merged with the default environment; None for the default
-
-    Raises
-    ------
-    EditError
-        Raised by every change that the text of the file does not allow.
+    Every change raises EditError if the text of the file does not allow it.
     """
 
     def __init__(self, draft: Draft, variant: str | None) -> None:
@@ -114,8 +106,8 @@ class WaterForm:
     def table(self, *keys: str) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
         """Return the columns and the rows of a table as texts; missing cells are empty.
 
-        Columns and rows are empty if there is no table. They are also empty if a row is longer than
-        the columns or contains anything but texts; only the text editor can show such a table.
+        Without a table, or if a row is too long or has nested values, there are no columns and no
+        rows.
         """
         table = self.value(*keys)
         columns = table.get("columns") if isinstance(table, dict) else None
@@ -220,8 +212,8 @@ _ACCEPT_HINT = "Enter accepts"
 class FormChoice(Cycle):
     """Selector of the form in which a water property is given.
 
-    The arrows show other forms, and Enter accepts the form shown. If the focus leaves without
-    Enter, the form in the draft is shown again.
+    The arrows show other forms, and Enter accepts. Leaving without Enter restores the form in the
+    draft.
     """
 
     BINDINGS = key_table.bindings("given")

@@ -1,7 +1,6 @@
 """Initial tables of the water form: typical currents, currents from files, and pasted rows.
 
-Rows copied from a spreadsheet, a CSV file or a web page are interpreted like files, by headings,
-units and sense of directions.
+Headings, units and directions of pasted rows are interpreted as in files.
 """
 
 from __future__ import annotations
@@ -78,15 +77,14 @@ def imported(path: Path, time: str, depth: float) -> tuple[Sequence[str], Sequen
     Parameters
     ----------
     path : CSV, NetCDF or zarr file
-    time : time of the profile, in ISO 8601 format; empty if the file has a single profile
+    time : time of the profile, in ISO 8601 format; empty for a single profile
     depth : water depth [m]
 
     Returns
     -------
-    columns : depth [m], and either speed [m/s] and direction [degrees] or eastward and northward
-        velocity [m/s], whichever needs fewer digits (usually as in the file). If the current has
-        an upward velocity, all three components of the velocity follow the depth.
-    rows : one row for each level, from the top; the values keep all digits of the file
+    columns : depth [m], and either speed [m/s] and direction [degrees] or velocities [m/s],
+        whichever needs fewer digits; always velocities if one is upward
+    rows : one row for each level, from the top, with all digits of the file
 
     Raises
     ------
@@ -164,9 +162,7 @@ def offered_headings(headings: Sequence[str] | None, columns: Sequence[str]) -> 
 
 
 def rows_in(columns: Sequence[str], headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Rows:
-    """Convert copied rows to the columns of a table.
-
-    If the copied rows have the same columns as the table, the texts are kept.
+    """Convert copied rows to the columns of a table; equal columns keep their texts.
 
     Raises
     ------

@@ -57,20 +57,17 @@ def mistakes(problems: Sequence[Problem], path: Path) -> str:
 
 
 class Workspace:
-    """State that all screens share.
+    """Data shared by all screens.
 
     Parameters
     ----------
-    session : editing session of the file
-    tell : function that shows a message in the last line of the screen until the next key; its
-        argument `wrong` marks an error
-    edited : function that checks the draft and keeps a backup copy; called after each change
+    tell : function that shows a message until the next key; its argument `wrong` marks an error
+    edited : function that checks the draft and keeps a backup copy
 
     Attributes
     ----------
-    index : search index of the catalogue and the components of the file; None until the catalogue
-        is loaded
-    view : last view of the file; None until the file is first solved
+    index : search index of the catalogue and the components of the file, once loaded
+    view : last view of the file, once solved
     good : last view with an equilibrium
     is_late : whether the view has been out of date for some time
     documents_elsewhere : message on how to get reports and sheets if the builder cannot write them
@@ -110,10 +107,7 @@ class Workspace:
         )
 
     def judged(self, otherwise: str) -> View | None:
-        """Return the view if it is up to date.
-
-        Otherwise show the message `otherwise`, and return None.
-        """
+        """Return the view if it is up to date, else show a message and return None."""
         if not self.is_fresh:
             self.tell(otherwise)
             return None
@@ -135,7 +129,7 @@ class Workspace:
         return self.session.name + (" (not saved)" if self.session.changed else "")
 
     def attempt(self, change: Callable[[], object]) -> tuple[bool, Place | None]:
-        """Make a change, and return its success and the row that `change` returned.
+        """Make a change; return whether the change succeeded, and the row that `change` returned.
 
         If the change fails, a message shows the reason.
         """
@@ -154,11 +148,7 @@ _FULL_CHECK_DELAY = 0.5  # seconds without a change before launch, recovery and 
 class Judging:
     """Workers that solve and check the draft of a workspace.
 
-    Parameters
-    ----------
-    app : application that runs the workers
-    workspace : workspace that provides the draft and receives the views
-    show : function that updates the screens; its argument `is_first` marks the first view
+    `show` updates the screens; its argument `is_first` marks the first view.
     """
 
     def __init__(self, app: App[int], workspace: Workspace, show: Callable[..., object]) -> None:
@@ -191,10 +181,7 @@ class Judging:
             self._show()
 
     def ask(self) -> None:
-        """Solve and check the draft.
-
-        If the worker is busy, wait until it is free, and then check only the latest draft.
-        """
+        """Solve and check the draft; a busy worker continues with the latest draft when free."""
         self._is_stale = False
         self._stop_waiting()
         if self._is_judging:

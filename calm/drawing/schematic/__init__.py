@@ -1,7 +1,7 @@
 """Drawing of the parts of a line in a column, with symbols, wrapped texts and values.
 
-The schematic of a line is one such column as an SVG picture, in order from the top and not to
-scale. The pages of a mooring diagram have several columns. Lengths are in points (1/72 inch).
+A schematic has one column, a mooring diagram several. Drawings are not to scale. Lengths are in
+points (1/72 inch).
 """
 
 from __future__ import annotations
@@ -46,14 +46,14 @@ _MOORED_AT, _TOWED_AT = 26.0, 46.0
 
 
 def schematic_svg(file: MooringFile, result: AnyResult | None = None) -> str:
-    """Draw a line as one SVG picture.
+    """Draw the schematic of a line as one SVG picture.
 
-    Up to about 50 parts fit on an A4 page; more parts need a longer sheet. The picture has no
-    external references, identifiers or style sheets, so that several pictures can be placed on a
-    page. Long texts are wrapped and never cut. The same line always gives the same picture. If a
-    result is given, the depths are those of the loaded line in the current. Without a result, the
-    depths are those of the upright, unstretched line; for a tow, and for a line with a float at the
-    surface, they are unknown.
+    Beyond about 50 parts, the picture is longer than an A4 page. The picture has no external
+    references, identifiers or style sheets. Texts are never cut. The same line always gives the
+    same picture.
+
+    Without a result, depths are those of the upright, unstretched line, and unknown if the line is
+    towed or reaches the surface.
     """
     (drawn,) = _draw_sheets(schematic_of(file, result), inf)
     return drawn
@@ -165,12 +165,11 @@ def _draw_scene(
 
 @dataclass(frozen=True)
 class LineColumn:
-    """Layout of a column: positions of the line, the texts and the values.
+    """Layout of a column: positions of the line, the texts and the values [pt].
 
     Attributes
     ----------
-    width : total width
-    headings : headings of the values; each is a sequence of text lines, with the unit last
+    headings : text lines of each heading, with the unit last
     rights : right edge of each column of values
     text : left and right edge of the texts
     line_at : distance of the line from the left edge
@@ -191,11 +190,7 @@ def column_of(
 ) -> LineColumn:
     """Compute the layout of a column; each column of values is as wide as its widest entry.
 
-    Parameters
-    ----------
-    parts : rows of text for each part next to the line
-    headings : headings of the values
-    line_at : distance of the line from the left edge; the symbols take twice this width
+    `line_at` is the distance of the line from the left edge. Symbols are twice as wide.
     """
     cells = [[*heading] for heading in headings]
     for row in parts:
@@ -251,8 +246,8 @@ def measured(
 ) -> list[PlacedPart]:
     """Compute the height of each part; the parts are not placed yet.
 
-    The height of a cable, including its clamps, increases with the logarithm of its length, so that
-    long cables look long. `growth` multiplies the rate of this increase.
+    The height of a cable grows with the logarithm of its length, at a rate that is multiplied by
+    `growth`.
     """
     found = [_measured(part, column) for part in parts]
     for number, one in enumerate(found):
@@ -293,7 +288,7 @@ def _text_lines(row: TextRow, room: float) -> list[TextLine]:
 def divided(parts: Sequence[PlacedPart], room: float) -> Iterator[list[PlacedPart]]:
     """Divide parts into groups at most `room` high.
 
-    A group ends above a junction if there is a junction near the end of the group, otherwise
+    A group ends above a junction, if one is near the end of the group. Otherwise the group ends
     between two pieces or, failing that, between two clamps.
     """
     rest = [*parts]

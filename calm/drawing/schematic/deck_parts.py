@@ -24,11 +24,10 @@ stretched lengths.
 def parts_of_deck(
     deck: Deck, listed: Sequence[DeckItem], *, surface: bool
 ) -> tuple[ShownPart, ...]:
-    """Convert the listed items of a line or leg to parts with values.
+    """Convert the listed items of a line or leg of a net to parts with values.
 
-    The values of each part are its number, cut length or position on the wire, stretched length,
-    depth, planned depth (if any part has one), height, tension and net buoyancy. `surface` is true
-    if the top of the line floats at the surface.
+    Planned depths are included if any part has one. `surface` is true if the line reaches the
+    surface.
     """
     weights = {one.label: one.wet_weight for one in deck.assessment.inventory}
     cells = partial(_values, deck.numbers, weights=weights, planned=has_plans(deck))
@@ -43,16 +42,15 @@ def parts_of(
     *,
     surface: bool,
 ) -> tuple[ShownPart, ...]:
-    """Convert the listed items of a line or leg to parts, from the top down.
+    """Convert the listed items of a line or leg of a net to parts, from the top down.
 
-    Consecutive connectors form one junction, unless they are listed separately. A part has the
-    labels of all items that it represents.
+    Consecutive connectors form one junction, unless they are listed separately.
 
     Parameters
     ----------
-    every : all items of the line, in which labels chosen by the user are looked up
+    every : all items of the line, with labels chosen by the user
     cells : function that returns the values next to a part
-    surface : whether the top of the line floats at the surface
+    surface : whether the line reaches the surface
     """
     own = _chosen_labels(every)
     codes = {one.serial: " · ".join(one.code_lines) for one in file.releases}

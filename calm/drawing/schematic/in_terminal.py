@@ -46,13 +46,10 @@ def schematic_text(
     *,
     ascii_only: bool = False,
 ) -> str:
-    """Draw a line as text, from the top and not to scale, with the columns of `schematic_svg`.
+    """Draw the schematic of a line as text, with the columns of `schematic_svg`.
 
-    Parameters
-    ----------
-    file, result : as in `schematic_svg`
-    width : width of the terminal [cells], at least about 55; labels and names are cut to fit
-    ascii_only : whether to draw with ASCII characters; labels keep their letters
+    `width` is at least about 55 cells; labels and names are cut to fit. With `ascii_only`, labels
+    keep their letters.
     """
     schematic = schematic_of(file, result)
     lines = [

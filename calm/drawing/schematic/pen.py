@@ -103,13 +103,8 @@ def _text(value: float | str) -> str:
 def picture(width: float, height: float, title: str, size: tuple[str, str] | None = None) -> Pen:
     """Create an empty picture with a white background, and return its pen.
 
-    The origin of the picture is the upper left corner.
-
-    Parameters
-    ----------
-    width, height : width and height in units of the picture, which are points if `size` is None
-    title : title of the picture
-    size : printed width and height, with units
+    The origin is the upper left corner. Units are points, unless `size` gives a printed width and
+    height with units.
     """
     printed = size or (f"{width:g}pt", f"{height:g}pt")
     attributes = {

@@ -37,13 +37,13 @@ class ShownPart:
 
     Attributes
     ----------
-    sign : symbol to draw; for a chain or cable with floats, the symbol and the number of the floats
-    rows : rows of text: two rows for a pair of releases, otherwise one
-    labels : labels of the pieces that the part represents
-    cable : symbol of the cable, if the part is a cable or clamped on a cable; None for a rigid part
+    sign : symbol to draw, with the number of the floats on a chain or cable
+    rows : rows of text: two for a pair of releases, otherwise one
+    labels : labels of the pieces in the part
+    cable : symbol of the cable that the part is or is clamped on; None for a rigid part
     length : length of a cable [m], NaN if unknown
     clamped : whether the part is clamped on the part above it
-    junction : whether the part is a junction, above which a page may end
+    junction : whether a page may end above the part
     """
 
     sign: Sign
@@ -61,15 +61,13 @@ class Schematic:
 
     Attributes
     ----------
-    title : name of the line
     subtitle : depth and position of a mooring, or speed of a tow
     note : explanation of the depths
     columns : names of the columns of values, from `HEADINGS`
     parts : parts from the top, with clamped instruments after their piece
     surface : whether the first part floats at the surface
-    towed_by : row of text at the ship or the helicopter
-    sea : row of text at the sea surface; None in air
-    seabed : row of text at the seabed; None if the depth of the seabed is unknown
+    towed_by, sea, seabed : rows of text at the ship or helicopter, sea surface and seabed, if
+        present
     """
 
     title: str
@@ -207,14 +205,13 @@ _UNKNOWN = "Not to scale. Depths are unknown until the line is solved."
 
 @dataclass(frozen=True)
 class Levels:
-    """Lengths of pieces, and depths of pieces and clamps; NaN if unknown.
+    """Lengths of pieces, and depths of pieces and clamps [m]; NaN if unknown.
 
     Attributes
     ----------
-    lengths, depths : cut length of each piece, and depth of the upper end of each piece [m]
-    clamps : depth of each clamped instrument [m]
+    lengths, depths : cut length, and depth of the upper end, of each piece
     first : piece at the top of the line
-    surface : whether the piece `first` floats at the surface
+    surface : whether the top piece floats at the surface
     note : explanation of the depths
     """
 
@@ -227,10 +224,9 @@ class Levels:
 
 
 def levels_of(file: MooringFile, result: AnyResult | None) -> Levels:
-    """Return lengths and depths from a result, if there is one, or from the upright line.
+    """Return lengths and depths from a result or, if None, from the upright, unstretched line.
 
-    The upright line is unstretched. Without a result, depths are unknown for a tow and for a line
-    that reaches the surface.
+    Without a result, depths are unknown for a tow and for a line that reaches the surface.
     """
     if result is not None:
         return Levels(

@@ -84,10 +84,8 @@ _DOWN = re.compile(r"\bdown(?:ward|wards)?\b")
 def sign_of(use: str, label: str, component: Component) -> Sign:
     """Choose the symbol for a piece or a clamped instrument.
 
-    Parameters
-    ----------
-    use, label : component id and label of the part; words in the label are considered last
-    component : component of the part; its kind, role, name and note are considered first
+    The choice depends on kind, role, name and note of the component, then on the component id
+    (`use`), and last on the label.
     """
     own = f"{use} {component.name or ''} {component.note or ''}".lower()
     words = f"{own} {label.lower()}"

@@ -1,7 +1,7 @@
 """Drawings of a solved line in a terminal: side view, plan, tension, and current by depth.
 
-A drawing consists of braille dots and is returned as one text for each row of cells. Drawings can
-have any size. Drawings of at least 20 by 6 cells have scales; larger drawings show more.
+A drawing consists of braille dots, and is a list with one text per row. Scales need at least 20 by
+6 cells.
 """
 
 from collections.abc import Iterable, Sequence
@@ -52,10 +52,9 @@ def elevation(
 ) -> list[Text]:
     """Draw a side view of a line, in the vertical plane of its excursion or of the tow.
 
-    Distances are from the anchor towards the free end, or from the ship backward. Distances and
-    depths have different scales. The line in still water is dotted. If the drawing is at least 50
-    cells wide, the names of parts are shown. `overlays` are drawn dashed; they are shapes in
-    other environments, or of other designs.
+    Distances are from the anchor towards the free end, or from the ship backward. Horizontal and
+    vertical scales differ. The line in still water is dotted; `overlays` are dashed. Names of parts
+    need a width of 50 cells.
     """
     side = line_picture.elevation_of(result, overlays)
     moored = not result.towed
@@ -143,7 +142,7 @@ def _placed_names(side: LinePicture, rows: int, room: int) -> list[tuple[int, st
 def _least_needed(found: list[tuple[str, PictureMark]], wanted: list[float], crowded: int) -> int:
     """Return the index of the name to omit among crowded names.
 
-    Names of instruments are omitted first; among these, the name closest to the middle.
+    Instruments come first and, among equal roles, the name closest to the middle.
     """
     around = [i for i, row in enumerate(wanted) if abs(row - wanted[crowded]) <= 2.0 * _FARTHEST]
     middle = sum(around) / len(around)
@@ -184,9 +183,8 @@ _KILO = 1e4
 def tension(result: LegResult, width: int, height: int) -> list[Text]:
     """Draw the tension against the distance along the line from its top.
 
-    A red dotted line shows the allowable load at each position: the working load of the piece, or
-    its breaking load divided by the required safety factor. Loads much larger than the tension are
-    not drawn.
+    A red dotted line shows the working load, or the breaking load divided by the required safety
+    factor. Loads far above the tension are omitted.
     """
     pulls, along = result.shape.tension, along_the_line(result.shape)
     if result.towed:  # pieces are listed from the ship down, while the shape begins at the body

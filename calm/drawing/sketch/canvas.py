@@ -103,7 +103,10 @@ _ROWS_PER_TICK = 3
 
 @dataclass(frozen=True)
 class CellScale:
-    """Range of a quantity over a number of dots, from `low` at the left or at the top to `high`."""
+    """Linear scale of a quantity over a row or column of dots.
+
+    The first dot, at the left or at the top, is at `low`; the last dot is at `high`.
+    """
 
     low: float
     high: float
@@ -176,9 +179,8 @@ class PlotFrame:
     def scale_across(self, values: Iterable[float], *units: str) -> None:
         """Write numbers along the last row of the canvas, and ticks on the row above.
 
-        `units` are alternative texts for the unit; the first text that fits is written after the
-        numbers. If no text fits, numbers are removed until the last text fits, but at least two
-        numbers remain.
+        `units` are alternative texts for the unit; the first that fits is written. For the last,
+        numbers may be omitted.
         """
         row, edge = self.canvas.height - 1, self.canvas.width
         labels: list[tuple[int, str]] = []
@@ -227,14 +229,13 @@ def scaled_frame(
 
     Parameters
     ----------
-    size : total numbers of columns and rows
+    size : numbers of columns and rows of the canvas
     caption : text above the frame, omitted if the canvas has too few rows
-    across : values at the left and the right edge
-    down : values at the upper and the lower edge
-    units : alternative texts for the unit of the horizontal scale (see `PlotFrame.scale_across`)
-    seabed : depth of the seabed below the frame, if any [m]
-    margin : number of free columns on the right for other texts
-    per_tick : number of columns for each number on the horizontal scale
+    across, down : values at the left and right edge, and at the upper and lower edge
+    units : alternative units of the horizontal scale (see `PlotFrame.scale_across`)
+    seabed : depth of the seabed below the frame [m], if any
+    margin : number of free columns on the right
+    per_tick : number of columns per horizontal number
     """
     canvas, head = Canvas(*size), header_rows(size[1])
     if head:

@@ -31,11 +31,10 @@ def leaf(section: Section, number: int) -> str:
 
 
 def page(report: Report, leaves: Sequence[str] | None = None) -> str:
-    """Render a report as a page, with its sections in order.
+    """Render a report as an HTML page with embedded style, script and drawings.
 
-    All texts are escaped, and invalid Unicode becomes question marks. Style, script and drawings
-    are embedded. The page is complete without its script, which sorts and filters the checks.
-    `leaves` are sections already rendered by `leaf`.
+    The script only sorts and filters the checks. Texts are escaped. `leaves` are sections already
+    rendered by `leaf`.
     """
     leaves = leaves or [leaf(section, at) for at, section in enumerate(report.sections, 1)]
     template = _environment().get_template("page.html.jinja")
