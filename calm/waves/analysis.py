@@ -142,8 +142,8 @@ class _Setting:
     ) -> tuple[tuple[Floats, Floats], list[Floats]]:
         """Compute the standard deviations of tension and of pitch in several sea states.
 
-        Return the arrays (seas, pieces) [N] and (seas, 1) [rad], and the flow past the nodes in each
-        sea. Tensions on the seabed and unknown pitches are 0.
+        Return the arrays (seas, pieces) [N] and (seas, 1) [rad], and the flow past the nodes in
+        each sea. Tensions on the seabed and unknown pitches are 0.
         """
         found = [self.respond(sea, flow, **how) for sea, flow in zip(seas, first, strict=True)]
         tensions = np.array([_by_piece(self.line, response) for response, _ in found])

@@ -107,10 +107,11 @@ class Buoy:
     ) -> tuple[Complexes, Complexes]:
         """Return the dynamic stiffness and the exciting force in heave.
 
-        Both arrays (f,) are complex [N/m]; the exciting force is per metre of wave elevation. Without
-        prescribed response or panel method, the formulas are for a disc: added mass `DISC_ADDED` ρR³,
-        Froude-Krylov force ρgA e^(-kT) 2 J1(kR)/(kR) with the draft T, and radiation damping
-        k ω |X|² / (2 ρ g²) from the exciting force X (Haskind's relation, Newman 1977, 6.18).
+        Both are complex arrays (f,) [N/m], and the exciting force is per metre of wave elevation.
+        Without prescribed response or panel method, the formulas are for a disc with draft T and
+        area A. The added mass is `DISC_ADDED` ρR³, and the Froude-Krylov force ρgA e^(-kT) 2
+        J1(kR)/(kR). The radiation damping is k ω |X|² / (2 ρ g²) in deep water, from the exciting
+        force X (Haskind's relation, Newman 1977, 6.18).
 
         Parameters
         ----------
@@ -143,8 +144,8 @@ class Buoy:
     ) -> tuple[Complexes, Complexes]:
         """Return the dynamic stiffness and the exciting forces in surge and pitch.
 
-        The reference point is on the axis of the float, at the surface. Pitch is positive if the part
-        above the surface moves forward.
+        The reference point is on the axis of the float, at the surface. Pitch is positive if the
+        part above the surface moves forward. Parameters are as in `Buoy` and `heave`.
 
         Returns
         -------
@@ -179,8 +180,8 @@ class Buoy:
     def righting(self, profile: Floats, density: float, gravity: float) -> float:
         """Return the righting moment of the float per radian of pitch [N m].
 
-        The moment includes the pull of the line at the bail. For a free float, the moment is the weight
-        times the metacentric height.
+        The moment includes the pull of the line at the bail. For a free float, the moment is the
+        weight times the metacentric height.
         """
         radius, height = profile.T
         buoyancy = float(np.trapezoid(radius**2 * height) / np.trapezoid(radius**2))
@@ -194,9 +195,9 @@ class Buoy:
     ) -> tuple[Floats, Floats, Complexes]:
         """Compute added mass (3, f), damping (3, f) and exciting forces (2, f), as in `pitch`.
 
-        Sources: `END_LOSS` for the added mass of the sections, `DISC_TURNED` for the added moment of
-        inertia of the bottom, and Haskind's relation for the damping, k ω Xi Xj / (4 ρ g²) in deep
-        water (Newman 1977, 6.18).
+        Sources: `END_LOSS` for the added mass of the sections, `DISC_TURNED` for the added moment
+        of inertia of the bottom, and Haskind's relation for the damping, k ω Xi Xj / (4 ρ g²) in
+        deep water (Newman 1977, 6.18).
         """
         radius, height = profile.T
         area = pi * radius**2

@@ -90,7 +90,8 @@ class LumpedLine:
     def turned(self, motion: Complexes) -> Complexes:
         """Return the rotations of the springs [rad] for given motions of the nodes.
 
-        Motions (f, n, 3) give rotations (f, n-1, 3): the changes of the unit vectors along the springs.
+        Motions (f, n, 3) give rotations (f, n-1, 3): the changes of the unit vectors along the
+        springs.
         """
         turn = np.diff(motion, axis=1) / self.span[:, None]
         return np.asarray(turn - (turn * self.spring).sum(2, keepdims=True) * self.spring)

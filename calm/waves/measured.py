@@ -22,9 +22,10 @@ COMPARED = 1.0, 10.0
 
 @dataclass(frozen=True)
 class MeasuredBand:
-    """Range, from `low` to `high`, of the ratio of measured to computed standard deviations of tension.
+    """Range, from `low` to `high`, of the ratio of measured to computed tension.
 
-    `from_height` and `to_height` are the limits of significant wave height in the comparison [m].
+    The ratio compares standard deviations. `from_height` and `to_height` are the limits of
+    significant wave height in the comparison [m].
     """
 
     low: float

@@ -168,7 +168,7 @@ class _Tensions:
         )
 
     def most_moved(self, mean: float, own: slice) -> tuple[float, Floats]:
-        """Return mean tension and spectral moments at the spring with the largest standard deviation.
+        """Return mean and spectral moments of tension at the spring with the largest deviation.
 
         The moments are 0 for a piece on the seabed.
         """
