@@ -65,11 +65,11 @@ class Buoy:
     ----------
     mass : mass of the float and of the pieces on it [kg]
     displaced : mass of the displaced water [kg]
-    radius : radius of the waterplane [m]
+    radius, draft : radius of the waterplane, and draft of the float [m]
     drag, heave_drag : K of the drag K|V|V in horizontal flow, and in heave [N/(m/s)²]
-    rao : prescribed response, one row per frequency: angular frequency [rad/s], then amplitude [-]
-        and phase [degrees] of heave per metre of elevation. Amplitude [degrees/m] and phase
-        [degrees] of pitch are optional
+    rao : rows of the prescribed response: angular frequency [rad/s], then amplitude [-] and phase
+        [degrees] of heave relative to the wave elevation. Amplitude [degrees/m] and phase [degrees]
+        of pitch are optional
     follows : whether heave and pitch follow the motion of the water surface
     panels : (12, f) result of `panel_response`; None if formulas are used instead
     profile : (s, 2) radii and heights of horizontal sections of the hull [m], from the keel up;

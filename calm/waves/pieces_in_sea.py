@@ -82,10 +82,7 @@ with the largest standard deviation.
 
 
 class CutOffs(NamedTuple):
-    """Responses to a sea state for three cut-off frequencies of the waves.
-
-    The cut-off frequencies are that of the analysis, half of it, and twice of it.
-    """
+    """Responses to a sea state for the cut-off frequency of the analysis, and for half and for twice this frequency."""
 
     full: WaveResponse
     half: WaveResponse
@@ -103,10 +100,10 @@ class MooringInSea:
     cut_off : cut-off frequency of the waves [rad/s]
     band : range of measured to computed tension; None for a line below the surface and for a float
         with a prescribed response
-    follower_std : standard deviation of the tension below a float that follows every wave [N];
-        None unless the float is at the surface and this sea state is the highest
+    follower_std : standard deviation of the tension below a float that follows every wave [N]; None
+        for a line below the surface, and for all but the highest sea state
     pitch_std : standard deviation of the pitch of the float [degrees]; None if unknown
-    moments : spectral moments of tension for the cut-off frequency, half of it, and twice of it
+    moments : spectral moments of tension, for the three cut-off frequencies in `CutOffs`
     spectrum : angular frequencies [rad/s], and spectrum of the tension at the top [N² s/rad]
     along : depth [m] of points down the line, and mean, standard deviation and maximum of the
         tension at these points [N]

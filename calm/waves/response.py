@@ -57,7 +57,10 @@ class WaveResponse:
     pitch: Complexes
 
     def moments(self, transfer: Complexes) -> tuple[Floats, Floats]:
-        """Return standard deviations and zero-crossing periods [s], from transfer functions (f, …)."""
+        """Return standard deviations and zero-crossing periods [s] of responses to the sea state.
+
+        `transfer` has the transfer functions (f, …) of the responses.
+        """
         shape = (-1,) + (1,) * (transfer.ndim - 1)
         spectral = np.abs(transfer) ** 2 * self.weight.reshape(shape)
         zeroth = spectral.sum(0)
