@@ -39,7 +39,7 @@ class WaterColumn:
         return values, slopes
 
     def at(self, depth: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return current (3, k), increase of the current per metre of depth, and density at k depths."""
+        """Return current (3, k), gradient of the current with depth (3, k), and density at depths."""
         values, slopes = self._rows
         interval = self.water.level.searchsorted(depth, side="right")
         origin = np.maximum(interval - 1, 0)

@@ -105,13 +105,12 @@ class Buoy:
     def heave(
         self, omega: Floats, number: Floats, density: float, gravity: float
     ) -> tuple[Complexes, Complexes]:
-        """Return the dynamic stiffness and the exciting force in heave.
+        """Return the dynamic stiffness and the exciting force in heave, complex arrays (f,) [N/m].
 
-        Both are complex arrays (f,) [N/m], and the exciting force is per metre of wave elevation.
-        Without prescribed response or panel method, the formulas are for a disc with draft T and
-        area A. The added mass is `DISC_ADDED` ρR³, and the Froude-Krylov force ρgA e^(-kT) 2
-        J1(kR)/(kR). The radiation damping is k ω |X|² / (2 ρ g²) in deep water, from the exciting
-        force X (Haskind's relation, Newman 1977, 6.18).
+        The exciting force is per metre of wave elevation. Unless prescribed or from a panel method,
+        the results are for a disc with draft T and area A. The added mass is `DISC_ADDED` ρR³, and
+        the Froude-Krylov force ρgA e^(-kT) 2 J1(kR)/(kR). The radiation damping is k ω |X|² / (2 ρ
+        g²) in deep water, from the exciting force X (Haskind's relation, Newman 1977, 6.18).
 
         Parameters
         ----------

@@ -33,11 +33,7 @@ def passing_probability(margin: float, deviation: float, period: float, duration
     """Return the probability that a Gaussian process departs from its mean by more than a margin.
 
     The formula is 1 - exp(-N exp(-½ (margin/σ)²)), where N = duration / period (Rice 1945).
-
-    Parameters
-    ----------
-    margin, deviation : departure from the mean, and standard deviation σ, in the same unit
-    period, duration : as in `greatest_of`
+    `margin` and the standard deviation σ have the same unit; for the periods, see `greatest_of`.
     """
     if deviation <= 0.0:
         return 0.0 if margin > 0.0 else 1.0

@@ -82,7 +82,11 @@ with the largest standard deviation.
 
 
 class CutOffs(NamedTuple):
-    """Responses to a sea state for the cut-off frequency of the analysis, and for half and for twice this frequency."""
+    """Responses to a sea state for three cut-off frequencies of the waves.
+
+    They are the cut-off frequency of the analysis, half of this frequency, and twice this
+    frequency.
+    """
 
     full: WaveResponse
     half: WaveResponse

@@ -112,10 +112,10 @@ class Waves:
         return np.array([np.sin(radians(self.toward)), np.cos(radians(self.toward)), 0.0])
 
     def velocity(self, position: Floats) -> Complexes:
-        """Return the velocity of the water (f, n, 3) at positions (n, 3) [m].
+        """Return the velocity of the water (f, n, 3) per metre of wave elevation [1/s].
 
-        The velocity is per metre of wave elevation [1/s]. The elevation is the real part of
-        e^(i(ωt - ks)), where s is the distance in the direction of travel.
+        `position` is (n, 3) [m]. The elevation is the real part of e^(i(ωt - ks)), where s is the
+        distance in the direction of travel.
         """
         k, omega = self.number[:, None], self.omega[:, None]
         ahead, height = self.ahead, np.minimum(position[:, 2], 0.0)[None, :]
