@@ -188,7 +188,7 @@ class Hodograph:
         return integrated(part, self._panels(start, step), floor)
 
     def _panels(self, start: float, step: float) -> list[float]:
-        """Divide a step of m into panels for quadrature, with an edge at the kink of the friction."""
+        """Divide a step of m into panels for quadrature, with one edge at the kink of friction."""
         low, high = sorted((start, start + step))
         # the line turns within the first few parts, which quadrature over a long step would miss
         edge, cuts = self._upright or self._a, []

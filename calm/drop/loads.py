@@ -39,7 +39,10 @@ class WaterColumn:
         return values, slopes
 
     def at(self, depth: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return current (3, k), gradient of the current with depth (3, k), and density at depths."""
+        """Return current (3, k), vertical gradient of the current (3, k), and density at depths.
+
+        The gradient is the increase per metre of depth.
+        """
         values, slopes = self._rows
         interval = self.water.level.searchsorted(depth, side="right")
         origin = np.maximum(interval - 1, 0)
