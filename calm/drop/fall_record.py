@@ -126,6 +126,7 @@ def end_tensions(mover: Mover, state: ChainState, *, within: bool = False) -> Fl
     above, below = on.summed(on.share[:, np.newaxis] * force)
     pull = state.tension * axis
     ends = np.linalg.norm([pull + above, pull - below], axis=1).T
+    # just after the release, the anchor pushes the pieces above; a real line would become slack
     return np.where(state.tension[:, np.newaxis] > 0.0, ends, 0.0)
 
 
@@ -215,6 +216,7 @@ def piece_tensions(drop: Motion) -> tuple[Floats, Floats]:
     The state under tow, the first of t states, is omitted. Rigid pieces that form one bar all have
     the tensions at the ends of that bar.
     """
+    # the flow past the line under tow differs from the flow after the release
     tension = np.array([end_tensions(drop.mover, one, within=True) for one in drop.states[1:]])
     ends = _ends_of_pieces(drop, tension)
     greatest: Floats = ends.max(axis=2)
@@ -251,6 +253,7 @@ def rest_difference(result: LegResult, rest: Motion) -> float:
     )
     found = np.concatenate([upper, lower]) - [*state.node[-1, :2], 0.0]
     away = np.linalg.norm(found - expected, axis=1)
+    # pieces on the seabed lead up to the top of the anchor at rest, but not in the equilibrium
     if result.anchor_load.grounded_length > 0.0:
         away = away[expected[:, 2] > -result.leg.water.depth + 1e-6 * result.leg.water.depth]
     return float(away.max())

@@ -72,10 +72,11 @@ def shared_times(measured: MooringMeasurements, currents: bool) -> list[str]:
 
 
 def fitted(requested: Sequence[str] = (), currents: bool = True) -> tuple[str, ...]:
-    """Return the names of the factors to estimate: the defaults and the requested factors.
+    """Return the names of the factors to estimate: the default factors and the requested factors.
 
-    Without measured currents, a factor on all drag cannot be distinguished from a factor on the
-    currents; the defaults are then the drag of rigid pieces and the length.
+    By default, the drag of cables and the drag of rigid pieces each have a factor. Without measured
+    currents, the length of cables has a factor instead of their drag, because factors on all drag
+    have the same effect as a factor on the currents.
     """
     for name in requested:
         if name not in FACTORS:
@@ -88,15 +89,14 @@ def fitted(requested: Sequence[str] = (), currents: bool = True) -> tuple[str, .
 class RecoveredMooring:
     """A recovered mooring with its records.
 
-    Creating the object reads the records and corrects known errors. `estimate` then estimates the
-    motion, and `study` compares the result with the measurements. The first attributes are the
-    parameters of `estimate_motion`, with all files as paths or ``LABEL=PATH``.
+    Creating the object reads the records and corrects known errors. The first attributes are
+    parameters of `estimate_motion`, with files as paths or ``LABEL=PATH``.
 
     Attributes
     ----------
-    moved : step common to the depths of all sensors, sought only if no currents were measured
+    moved : step common to the depths of all sensors; only if no currents were measured
     measured : the measurements
-    notes : notes on the measurements, in sentences
+    notes : sentences on the measurements
     source : names and hashes of the source files
     """
 
@@ -303,27 +303,27 @@ def estimate_motion(
     Parameters
     ----------
     mooring : mooring with a position
-    pressures : pressures of the sensors on the line: one or several files, as paths or
-        ``LABEL=PATH``, an `xarray.Dataset` with the contents of such a file, or a
-        `pandas.DataFrame` with an index of times and columns such as ``LABEL[dbar]``
-    currents : records of currents, in the same forms; if empty, CALM infers the currents from the
+    pressures : records of pressure: paths, texts ``LABEL=PATH``, `xarray.Dataset` with the contents
+        of such a file, or `pandas.DataFrame` with an index of times and columns such as
+        ``LABEL[dbar]``
+    currents : records of currents, in the same forms; if empty, currents are estimated from the
         pressures
     match : how sensors are matched to the line: by `label`, or by nominal `height` or `depth`
     fit : factors to estimate in addition to the drag: `buoyancy`, `length`
     hold_out : labels of sensors that are withheld to test the result
     cross_validate : whether to withhold each sensor in turn to test the result
-    sea_level : path of the sea-surface heights over time
+    sea_level : path of sea-surface heights over time
     flags : accepted quality flags of the pressures
     gap : longest gap over which values are interpolated [s]; two hours by default
     declination : angle added to the directions of the currents [degrees]
     correct : faults to correct: `clock`, `gain`, `offset`, `drift`, or `air` for absolute pressures
     without : labels of sensors to ignore
-    workers : number of threads; by default one for each available processor
+    workers : number of threads; by default one for each processor
 
     Raises
     ------
-    InputError, UsageError
-        A file cannot be read or does not belong to the mooring, or too few sensors are left.
+    InputError, UsageError A file cannot be read or does not belong to the mooring, or too few
+        sensors are left.
     """
     refuse_all_but_moorings(mooring.file)
     with TemporaryDirectory() as name:
