@@ -76,8 +76,8 @@ def chart_solve(
 ) -> ChartAnswer:
     """Find every cable that has three given quantities, or the reason why there is none.
 
-    The error of an angle is at most 1e-9 rad; other relative errors are at most 1e-9. The tension
-    of an almost straight cable, which turns by less than 0.01 rad, is less accurate.
+    Errors are at most 1e-9 rad for angles, and 1e-9 of the value for other quantities. For a cable
+    that turns by less than 0.01 rad, the tension is less accurate.
 
     Parameters
     ----------

@@ -252,10 +252,9 @@ def integrated(part: Callable[[float], float], edges: Sequence[float], floor: fl
 class Station(NamedTuple):
     """Points on a line in a stream, relative to the given end of the line.
 
-    The arrays have the shape of the given arcs. Angles are below 90° for a cable above a towed
-    body, and above 90° (90° + tilt) for a mooring line. At a body of weight W in water and drag D,
-    the tension is √(W² + D²) and the angle atan2(W, D). At a float of buoyancy B, the angle is
-    atan2(B, −D).
+    The angle is below 90° for a cable above a towed body, and above 90° (90° + tilt) for a mooring
+    line. At a body of weight W in water and drag D, the tension is √(W² + D²) and the angle
+    atan2(W, D). At a float of buoyancy B, the angle is atan2(B, −D).
 
     Attributes
     ----------

@@ -143,12 +143,11 @@ def heavy_line(
     Parameters
     ----------
     arc : distance s along the line from the given end [m], positive up the line
-    tension : T₀ > 0 at the given end [N]
-    angle : φ₀ at the given end, −π to π [rad]
+    tension, angle : T₀ > 0 [N] and φ₀, −π to π [rad], at the given end
     weight : w > 0, weight per metre in the fluid [N/m]
     normal_drag : R > 0, drag per metre of a line normal to the stream [N/m]
     tangential_drag : drag per metre of a line along the stream, ≥ 0 [N/m]
-    law : dependence on the angle: "square" (cos²φ) or "constant"
+    law : dependence of the tangential drag on the angle: "square" (cos²φ) or "constant"
 
     Raises
     ------

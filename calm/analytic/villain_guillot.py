@@ -172,8 +172,8 @@ def linear_tension_ratio(
 ) -> Floats:
     """Return the tension ratio T/T₀ = (δ₀/δ)^A e^(B (α − α₀)) of a towed cable for D = 1.
 
-    With the weight w, the normal drag n and the tangential drag t, A = (w² + t n)/(w² + n²) and
-    B = w (t − n)/(w² + n²). Arrays broadcast.
+    A = (w² + t n)/(w² + n²) and B = w (t − n)/(w² + n²), with the weight w and the normal and
+    tangential drag n and t. Arrays broadcast.
 
     Parameters
     ----------

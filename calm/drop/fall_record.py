@@ -25,12 +25,11 @@ class DepthReached:
 
     Attributes
     ----------
-    part : the piece or clamp
     rest, greatest : depth of the upper end at rest, and its largest depth [m]
     time : time from the release of the anchor to the largest depth [s]; None if the depth exceeds
         the depth at rest by no more than `OVERSHOOT`
-    rating : depth rating of the part [m]; None if unknown
-    beyond : whether the deeper end of the part goes below the depth rating
+    rating : depth rating [m]; None if unknown
+    beyond : whether the deeper end goes below the depth rating
     """
 
     part: Piece | Clamp
@@ -76,11 +75,10 @@ class FallPath:
     Attributes
     ----------
     time : time since the release [s]
-    anchor_depth : depth of the lower end of the anchor [m]
+    anchor_depth, float_depth : depths of the lower end of the anchor and of the free end [m]
     anchor_speed : downward speed of the anchor [m/s]
-    anchor_x, float_x : horizontal distances of the anchor and the free end from the anchor at the
-        release, positive towards the float [m]
-    float_depth : depth of the free end [m]
+    anchor_x, float_x : horizontal distances of the anchor and the free end from the release,
+        positive towards the float [m]
     anchor_tension : tension of the line at the anchor [N]
     """
 

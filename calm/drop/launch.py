@@ -33,24 +33,22 @@ CHECK_FINENESS = Fineness(bars=50, steps=50)
 class Launch:
     """Fall of a line behind its anchor, which is released while the ship tows the line.
 
-    The line is towed at 1 m/s against the current. The jerk when the line straightens and the swing
-    of the line are neglected.
+    The line is towed at 1 m/s against the current. Jerk and swing of the line are neglected.
 
     Attributes
     ----------
     fall_speed : touchdown speed of the anchor [m/s], positive down
-    fall_speed_band : touchdown speeds [m/s] for twice and for half the drag of the anchor and the
-        tangential drag of the line, in the last time step; NaN without solution
+    fall_speed_band : touchdown speeds [m/s] for twice and for half the anchor drag and tangential
+        drag of the line in the last time step; NaN without solution
     anchor_tension : maximum load of the line on the anchor [N]
     drift : velocity of the anchor to the east and to the north at touchdown [m/s]
     tension_top, tension_bottom : (n,) maximum tension at the ends of every piece above the anchor
         [N]
-    anchor_drag_known : False if the anchor has no `kt`, so that the drag of a cube is assumed
+    anchor_drag_known : False if the anchor drag is assumed to be that of a cube
     greatest_speed, greatest_tension : upper limits of the touchdown speed [m/s] and of the tension
-        (n,) in every piece [N]; if the anchor drag is unknown, with a last time step without anchor
+        (n,) in every piece [N]; if the anchor drag is unknown, with a last time step without this
         drag
-    tangles : indices of pieces that are upside down at touchdown, wholly or in part, because the
-        line above has overtaken them
+    tangles : indices of pieces overtaken by the line above, and upside down at touchdown
     """
 
     fall_speed: float

@@ -59,10 +59,9 @@ class Loads:
     Attributes
     ----------
     force : (3, k) force [N]
-    by_flow : (3, 3, k) derivative with respect to the flow past the load [N/(m/s)]
-    by_axis : (3, 3, k) derivative with respect to the unit axis of the bar, for changes normal to
-        the axis [N]
-    by_height : (3, k) derivative with respect to height, with the shear of the current [N/m]
+    by_flow : (3, 3, k) derivative by the flow past the load [N/(m/s)]
+    by_axis : (3, 3, k) derivative by the unit axis of the bar, for changes normal to the axis [N]
+    by_height : (3, k) derivative by height, with the shear of the current [N/m]
     """
 
     force: Floats
@@ -85,10 +84,8 @@ def loads_on(
 
     Parameters
     ----------
-    height : (k,) height of the loads above the surface [m]
-    velocity : (3, k) velocity of the loads over the ground [m/s]
-    axis : (3, k) unit axis of the bar of each load, pointing down the line
-    strain : (k,) strain of the bar of each load
+    height, velocity : (k,) height above the surface [m], and (3, k) velocity over the ground [m/s]
+    axis, strain : (3, k) unit axis, down the line, and (k,) strain of the bar of each load
     variation : (k,) factor on the normal drag, from the Reynolds number of smooth bodies
     slowest : speed below which drag is proportional to the speed [m/s]
     """

@@ -1,8 +1,8 @@
 """One time step of a chain without inertia: positions of its nodes at the end of the step.
 
-The forces on every node cancel at the end of the step. The drag is for the velocity
-V = (X - Xₙ)/Δt over the step (implicit Euler). Positions and tensions are found together by
-Newton's method, so bars may be stiff or inextensible.
+The forces on every node cancel at the end of the step, with drag for the mean velocity
+(X - Xₙ)/Δt over the step (implicit Euler). Positions and tensions are found together by Newton's
+method, so bars may be stiff or inextensible.
 """
 
 from dataclasses import dataclass
@@ -69,11 +69,10 @@ class ChainState:
     Attributes
     ----------
     time : time since the release [s]
-    node : (n+1, 3) positions of the nodes to the east, to the north and up [m]
+    node, velocity : (n+1, 3) positions of the nodes east, north and up [m], and their mean
+        velocities in the last time step [m/s]
     tension : (n,) tension at the midpoint of the bars [N]
-    velocity : (n+1, 3) mean velocities of the nodes in the last time step [m/s]
-    acceleration, tightening : (n+1, 3), (n,) rates of change of velocity [m/s²] and tension [N/s];
-        0 if unknown
+    acceleration, tightening : (n+1, 3), (n,) rates of change of velocity and tension; 0 if unknown
     lasted : length of the last time step [s]; 0 if there was none
     """
 
@@ -320,8 +319,8 @@ def _solved(
     ----------
     residual : (4, n+1) residual forces on the nodes and residual lengths of the bars
     diagonal : (3, 3, n+1) derivative of the force on a node by its own position
-    beside : two arrays (3, 3, n), derivatives of the force on a node by the position of the node
-        below and by that of the node above
+    beside : two arrays (3, 3, n), derivatives by the position of the node below, and of the node
+        above
     axis : (3, n) axes of the bars, downward
     slack : (n,) derivative of a bar's length by its tension, negative
     fixed : indices of unknowns whose correction is 0

@@ -50,36 +50,31 @@ class RunStart:
 class DropPlan:
     """Plan for dropping a mooring anchor last, with the line streamed behind the ship.
 
-    Lengths and depths are in m, times in s, speeds in m/s, forces in N, and directions in degrees
-    clockwise from north. Positions are distances east and north of the target. The start of the
-    fall is the release of the anchor, and its end is the touchdown.
+    Units are m, s, m/s, N, and degrees clockwise from north. Speed and course are over the ground,
+    and positions are east and north of the target. The fall lasts from the release of the anchor to
+    its touchdown.
 
     Attributes
     ----------
-    ship_speed, course : speed and course of the ship over the ground
     streamed, astern : horizontal distance and direction from the anchor to the free end at the
         release
-    fall_time : time from the release to the touchdown
     fall_back, aside : horizontal distances from the release to the touchdown: towards the float,
         and to the right of this direction
-    time_error : estimated numerical error of `fall_time`, at least 0.05 %
-    distance_error : estimated numerical error of `fall_back` and `aside`
-    fall_time_band, fall_back_band : smallest and largest value for anchor drags from half to twice
-        the drag used
-    touchdown_speed : speed of the anchor at touchdown
-    greatest_tension : maximum tension in the line during the fall
+    time_error, distance_error : estimated numerical errors of `fall_time`, and of `fall_back` and
+        `aside`
+    fall_time_band, fall_back_band : smallest and largest value for half to twice the anchor drag
     tow_past : distance of the release past the target, along the course
     let_go : position of the release
-    deck_time : time to handle a piece on deck, by the role of the piece; None if not specified
-    start : start of the run; None without deck times
-    anchor_drag : coefficient K of the drag K|V|V of the anchor [N/(m/s)²]
-    drag_known : False if the file gives no anchor drag, so that the drag of a cube is assumed
-    path, moments, pulls : time series of the fall, shapes of the line, and maximum tensions in the
+    deck_time : time to handle a piece on deck, by the role of the piece
+    start : start of the ship's run; None without deck times
+    anchor_drag : K of the drag K|V|V of the anchor [N/(m/s)²]
+    drag_known : False if the anchor drag is assumed to be that of a cube
+    path, moments, pulls : time series of the fall, shapes of the line, and maximum tensions in
         pieces
-    depths : largest depths of floats and of parts with an instrument; empty if the line settles
-        away from its equilibrium
+    depths : largest depths of floats and instruments; empty if the line settles away from its
+        equilibrium
     rest_difference : largest distance between a piece's end at rest and its equilibrium position;
-        None if the equilibrium is slack and not unique
+        None if the equilibrium is not unique (slack line)
     """
 
     mooring: Design = field(repr=False)
@@ -220,14 +215,12 @@ def drop_plan(
 
     Parameters
     ----------
-    ship_speed : speed of the ship over the ground [m/s]; `ship_speed`, `streamed` and `course` may
-        be texts with a unit, such as ``"2 knot"``
+    ship_speed : speed over the ground [m/s]; `ship_speed`, `streamed` and `course` may be texts
+        with a unit, such as ``"2 knot"``
     streamed : horizontal distance from the anchor to the free end at the release [m]; by default
-        the distance that results under tow
-    course : course of the ship over the ground [degrees]; by default against the surface current,
-        or north in still water
+        the distance under tow
+    course : course over the ground [degrees]; by default against the surface current, or north
     result : result of the mooring in the same environment, if already solved
-    fineness : numbers of bars and time steps
     deck_time : time to handle a piece on deck, by the role of the piece [s]; required for the start
         of the run
 

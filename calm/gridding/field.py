@@ -3,12 +3,12 @@
 The field is a mean profile plus an anomaly. The correlation of the anomaly is a Matérn function of
 order 3/2 along depth, and an exponential function in time. A share of the variance is uncorrelated.
 
-An error in the depth of an instrument causes an error in its values: depth error times gradient.
-The standard deviation of the result includes this error in full, because all instruments may share
-it. Half of its variance is also independent noise of each instrument.
+A depth error of an instrument causes an error in its values: depth error times gradient. All
+instruments may share this error, so the standard deviation of the result includes it in full. Half
+of its variance is also independent noise of each instrument.
 
-Source: Rasmussen and Williams, Gaussian Processes for Machine Learning, 2006, eq. 4.17 and 4.18 for
-the correlation, eq. 2.25 and 2.26 for the mean and variance.
+Source: Rasmussen and Williams, Gaussian Processes for Machine Learning, 2006, eq. 4.17 and 4.18
+(correlation), eq. 2.25 and 2.26 (mean and variance).
 """
 
 from __future__ import annotations

@@ -50,11 +50,9 @@ class GriddedRecord:
 
     Attributes
     ----------
-    fields : samples and fitted field of each quantity
-    names : variable in the dataset for each quantity
+    fields, names : samples with fitted field, and variable in the dataset, for each quantity
     levels : (k,) depths of the levels [m]
-    cards : summary of each file that was read
-    notes : sentences on oddities in the input
+    cards, notes : summary of each file that was read, and sentences on oddities in the input
     layout : layout of the gridded file
     """
 
@@ -152,14 +150,13 @@ def grid(
     ----------
     depths : result of `calm.estimate_motion`, its `xarray.Dataset`, or the path of a file from
         ``calm motion``
-    values : one or several records of the instruments: paths, texts ``LABEL=PATH``,
-        `xarray.Dataset` with the contents of such a file, or `pandas.DataFrame` of one instrument,
-        with an index of times and columns such as ``temperature[degC]``. A mapping from labels to
-        records is also accepted
+    values : records of the instruments: paths, texts ``LABEL=PATH``, `xarray.Dataset` with the
+        contents of such a file, or `pandas.DataFrame` of one instrument, with an index of times and
+        columns such as ``temperature[degC]``. A mapping from labels to records is also accepted
     levels : depths of the levels [m], or a text such as ``0:20:1500``
     step : interval over which values are averaged [s]; by default, about the times of `depths`
-    variables : quantities (`temperature`, `salinity`, `u` or `v`); by default, all quantities in
-        the records. Names in capitals, such as `TEMP`, give names in capitals in the dataset
+    variables : `temperature`, `salinity`, `u` or `v`; all by default. Names in capitals, such as
+        `TEMP`, give names in capitals in the dataset
     method : `depth-time`, or `depth` to treat each time separately
     flags : quality flags of the values that are used
 

@@ -187,8 +187,7 @@ def chance_of(code: int, times: int) -> tuple[float, float]:
 def step_times(law: LinearLaw, covariance: Floats, columns: Sequence[Floats]) -> list[int]:
     """Return the index of the most likely start of each candidate change in the readings.
 
-    A change lasts to the end of the record. The index is 0 if the change covers the whole record,
-    or if too few readings show its start.
+    A change lasts to the end of the record. The index is 0 if too few readings show the start.
 
     Parameters
     ----------

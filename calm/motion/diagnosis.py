@@ -132,8 +132,8 @@ class Diagnosis:
         whole = round(late / self.step) if self.step > 0.0 else 0
         part = late / self.step - whole if self.step > 0.0 else 0.0
         before, there, after = (self._after(steps) for steps in (whole - 1, whole, whole + 1))
-        # a quarter of the curvature neither amplifies nor smooths noise, which would itself favour a
-        # clock error
+        # a quarter of the curvature neither amplifies nor smooths noise, which would itself favour
+        # a clock error
         bent = 0.5 * part * (after - before) + 0.125 * part**2 * (after - 2.0 * there + before)
         return there + np.nan_to_num(bent)
 

@@ -3,15 +3,16 @@
 The unknowns at each time are
 
 - the current at several depths (interpolation knots);
-- the relative error in the knockdown of each of several stretches of the line;
+- the relative error in the knockdown of each stretch of the line;
 - the tide.
 
-The unknowns of the whole record are factors on the drag, a depth error common to all sensors (the
-datum), and the offset of each sensor. Datum and offsets may change in rare steps. Errors of meters
-and sensors, and values and steps of datum and sensor positions, have Student's t distributions. All
-other priors are normal. The method is a Kalman smoother with Gauss-Newton steps over the whole
-record. Expectation and maximisation (Dempster, Laird and Rubin 1977) estimate the meter error for
-each quality flag.
+The unknowns of the whole record are drag factors, a depth error common to all sensors (the datum),
+and sensor offsets. Datum and offsets may change in rare steps. Most priors are normal. Errors of
+meters and sensors, and values and steps of datum and sensor positions, have Student's t
+distributions.
+
+The method is a Kalman smoother with Gauss-Newton steps over the whole record. Expectation and
+maximisation (Dempster, Laird and Rubin 1977) estimate the meter error for each quality flag.
 """
 
 from __future__ import annotations
@@ -180,8 +181,6 @@ def next_shares(
     shares: Floats, alike: Floats, square: Floats, covariance: Floats, hours: float
 ) -> Floats:
     """Return the relative errors (z,) of z stretches of the line, after one step of Fisher scoring.
-
-    The logarithms of the relative errors have a normal prior.
 
     Parameters
     ----------

@@ -237,7 +237,7 @@ def joined(
     Raises
     ------
     UsageError
-        A label is not on the line, or the currents, pressures and sea levels do not overlap.
+        A label is not on the line, or the records do not overlap.
     """
     time = common_times(currents, sensors)
     order = np.argsort([still[point] for point in points], kind="stable")

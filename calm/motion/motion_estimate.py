@@ -89,14 +89,13 @@ def fitted(requested: Sequence[str] = (), currents: bool = True) -> tuple[str, .
 class RecoveredMooring:
     """A recovered mooring with its records.
 
-    Creating the object reads the records and corrects known errors. The first attributes are
-    parameters of `estimate_motion`, with files as paths or ``LABEL=PATH``.
+    Creating the object reads and corrects the records. The first attributes are parameters of
+    `estimate_motion`, with files as paths or ``LABEL=PATH``.
 
     Attributes
     ----------
     moved : step common to the depths of all sensors; only if no currents were measured
-    measured : the measurements
-    notes : sentences on the measurements
+    measured, notes : measurements, and sentences on them
     source : names and hashes of the source files
     """
 
@@ -306,12 +305,11 @@ def estimate_motion(
     pressures : records of pressure: paths, texts ``LABEL=PATH``, `xarray.Dataset` with the contents
         of such a file, or `pandas.DataFrame` with an index of times and columns such as
         ``LABEL[dbar]``
-    currents : records of currents, in the same forms; if empty, currents are estimated from the
-        pressures
-    match : how sensors are matched to the line: by `label`, or by nominal `height` or `depth`
+    currents : records of currents in these forms; if empty, currents are estimated from pressures
+    match : key that matches sensors to the line: `label`, or nominal `height` or `depth`
     fit : factors to estimate in addition to the drag: `buoyancy`, `length`
     hold_out : labels of sensors that are withheld to test the result
-    cross_validate : whether to withhold each sensor in turn to test the result
+    cross_validate : whether to withhold each sensor in turn
     sea_level : path of sea-surface heights over time
     flags : accepted quality flags of the pressures
     gap : longest gap over which values are interpolated [s]; two hours by default

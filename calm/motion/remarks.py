@@ -258,8 +258,7 @@ def linear(depth: Floats, point: Integers, still: Floats, wanted: int) -> Floats
 
     Parameters
     ----------
-    depth : (n, s) depths of the sensors [m]
-    point : (s,) points of the sensors
+    depth, point : depths (n, s) of the sensors [m], and their points (s,)
     still : (p,) depths of all points in still water [m]
     wanted : index of the point
     """

@@ -215,13 +215,13 @@ def plausible(
 ) -> tuple[InstrumentSeries, list[str]]:
     """Remove implausible readings from a sensor, and return notes about the removal.
 
-    Depths are corrected if readings on deck show that the pressures are absolute. Of several
-    readings at the same time, the first is kept. These readings are implausible:
+    These readings are implausible:
 
     - readings far shallower than `place`, the depth of the sensor in still water [m]; - readings
     far below the seabed, whose depth is `seabed` [m]; - readings of a stuck sensor.
 
-    If most readings are too shallow or too deep, they are kept, and `unusable` reports the sensor.
+    If most readings are too shallow or too deep, all are kept. If readings on deck show that
+    pressures are absolute, they are corrected. Of several readings at one time, the first is kept.
     """
     notes = []
     again = np.zeros(len(sensor.time), bool)
@@ -329,8 +329,8 @@ def metre_notes(measured: Floats, expected: Floats, latitude: float) -> list[str
         (pressure_at(measured, latitude), "low", "depths in metres recorded as dbar"),
         (depth_of(measured, latitude), "high", "pressures in dbar recorded as depths in metres"),
     ):
-        # no common offset is allowed, because an offset and a wrong length of the line together would
-        # have the same effect as another unit
+        # no common offset is allowed, because an offset and a wrong length of the line together
+        # would have the same effect as another unit
         left = rms(true - expected)
         if left <= min(EXPLAINED * rms(off), BEYOND * float(off.std())):
             share = 100.0 * float(np.abs(measured / true - 1.0).mean())

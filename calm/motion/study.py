@@ -66,14 +66,13 @@ class MotionEstimate:
     task : input of the estimate, with the common unknowns of the record
     dataset : result of `calm motion`
     factors : value and 95 % interval of each factor on the line
-    sensors, plain : agreement of each sensor in use with the estimated depths, and with depths
-        computed from the measured currents alone
+    sensors, plain : agreement of each sensor in use with the estimated depths, and with depths from
+        the measured currents alone
     held_out : errors of the estimated depths at each withheld sensor
     diagnosis : faults of sensors, line and currents
     fits : whether the line is consistent with the pressures
-    remarks : sentences on doubts about the data
+    remarks, notes : sentences on doubts about the data, and on the input
     false : times at which the current at a level is probably false, by name of the level
-    notes : sentences on the input
     """
 
     task: Task

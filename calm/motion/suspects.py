@@ -84,9 +84,9 @@ def meter_remarks(measured: MooringMeasurements, names: Sequence[str]) -> list[s
     """Return a remark on each current meter with rotated or mirrored readings, or a wrong unit.
 
     A meter is reported if it disagrees with its two nearest meters, while those two agree. The
-    measure is the complex correlation r of the currents, whose phase is the mean angle between the
-    currents (Kundu 1976, J. Phys. Oceanogr. 6, 238-242). For n independent times, the standard
-    deviation of the phase is sqrt((1 - r²) / (2 r² n)).
+    measure is the complex correlation r of the currents, whose phase is the mean angle between them
+    (Kundu 1976, J. Phys. Oceanogr. 6, 238-242). For n independent times, the standard deviation of
+    the phase is sqrt((1 - r²) / (2 r² n)).
     """
     flow = np.where(measured.flag <= GOOD, measured.u + 1j * measured.v, np.nan)
 
@@ -158,15 +158,11 @@ def torn(
     """Remove readings that differ in depth by more than the length of line between the sensors.
 
     Of two such readings, the one farther from the median of its sensor is removed. A sensor that
-    would lose half of its readings keeps all. The sensors `hidden` are not used.
+    would lose half of its readings keeps all. Sensors in `hidden` are ignored. Also return notes.
 
     Parameters
     ----------
     distance : (p,) distance of the points from the top, along the line [m]
-
-    Returns
-    -------
-    The remaining measurements, and notes on the removal.
     """
     depth, place = measured.depth, distance[measured.point]
     used = [i for i, label in enumerate(measured.label) if label not in hidden]

@@ -69,8 +69,7 @@ class WaveAnalysis:
     ----------
     states : results for the sea states, in the given order
     accuracy : estimated errors in the highest and in the shortest sea
-    fatigue : fatigue of each piece, for the shares of time of the sea states; a single sea state
-        lasts all year
+    fatigue : fatigue of each piece, from the shares of time of the sea states
     warnings : warnings about assumptions
     pitch_unknown : reason why the pitch of the float is not computed; None if it is computed
     """
@@ -160,13 +159,11 @@ def analyse(
 ) -> WaveAnalysis:
     """Compute tensions and motions of a mooring in sea states.
 
-    The waves are linear and long-crested, and the drag is linearised about the mean current.
-    Elements and frequencies are refined until standard deviations of tension and pitch converge to
-    1 % in the highest and in the shortest sea.
+    Waves are linear and long-crested, and drag is linearised about the mean current. Standard
+    deviations of tension and pitch converge to 1 % in the highest and in the shortest sea.
 
     Parameters
     ----------
-    seas : one or more sea states
     toward : direction in which the waves travel [degrees], clockwise from north
     duration : duration for which maximum and minimum tension are computed [s]
     watched : wrapper around the iteration over the sea states, for instance to show progress

@@ -63,18 +63,17 @@ class Buoy:
 
     Attributes
     ----------
-    mass : mass of the float and of the pieces on it [kg]
-    displaced : mass of the displaced water [kg]
+    mass, displaced : mass of the float with the pieces on it, and of the displaced water [kg]
     radius, draft : radius of the waterplane, and draft of the float [m]
     drag, heave_drag : K of the drag K|V|V in horizontal flow, and in heave [N/(m/s)²]
-    rao : rows of the prescribed response: angular frequency [rad/s], then amplitude [-] and phase
-        [degrees] of heave relative to the wave elevation. Amplitude [degrees/m] and phase [degrees]
-        of pitch are optional
+    rao : rows of the prescribed response: angular frequency [rad/s], amplitude [-] and phase
+        [degrees] of heave relative to the wave elevation; optionally amplitude [degrees/m] and
+        phase of pitch
     follows : whether heave and pitch follow the motion of the water surface
     panels : (12, f) result of `panel_response`; None if formulas are used instead
     profile : (s, 2) radii and heights of horizontal sections of the hull [m], from the keel up;
         None if pitch is not computed
-    centre : height of the centre of mass of the float with the pieces on it [m]
+    centre : height of the centre of mass, with the pieces on the float [m]
     bail : height of the attachment point of the line [m]
     gyration : radius of gyration about a horizontal axis through the centre of mass [m]
     """
@@ -107,10 +106,10 @@ class Buoy:
     ) -> tuple[Complexes, Complexes]:
         """Return the dynamic stiffness and the exciting force in heave, complex arrays (f,) [N/m].
 
-        The exciting force is per metre of wave elevation. Unless prescribed or from a panel method,
-        the results are for a disc with draft T and area A. The added mass is `DISC_ADDED` ρR³, and
-        the Froude-Krylov force ρgA e^(-kT) 2 J1(kR)/(kR). The radiation damping is k ω |X|² / (2 ρ
-        g²) in deep water, from the exciting force X (Haskind's relation, Newman 1977, 6.18).
+        The force is per metre of wave elevation. Unless prescribed or from a panel method, the
+        results are for a disc of radius R, area A and draft T. The added mass is `DISC_ADDED` ρR³,
+        and the Froude-Krylov force ρgA e^(-kT) 2 J1(kR)/(kR). The radiation damping in deep water
+        is k ω |X|² / (2 ρ g²) for the exciting force X (Haskind's relation, Newman 1977, 6.18).
 
         Parameters
         ----------
@@ -144,7 +143,7 @@ class Buoy:
         """Return the dynamic stiffness and the exciting forces in surge and pitch.
 
         The reference point is on the axis of the float, at the surface. Pitch is positive if the
-        part above the surface moves forward. Parameters are as in `Buoy` and `heave`.
+        part above the surface moves forward.
 
         Returns
         -------
@@ -342,19 +341,17 @@ def _round_hull(hull: Hull | None, draft: float) -> tuple[float, Floats | None]:
 def panel_response(profile: Floats, density: float, gravity: float) -> Complexes:
     """Compute added mass, damping and wave forces of an axisymmetric hull with Capytaine.
 
-    The water is deep, and `profile` is as in `Buoy`.
+    The water is deep, `profile` is as in `Buoy`, and pitch refers to the surface.
 
     Returns
     -------
     Complex array (12, f). Row 0 is the angular frequency ω [rad/s]. Rows 1 to 8 are pairs of added
-    mass and damping in heave, in surge, for the coupling of surge with pitch, and in pitch. Rows 9
-    to 11 are the exciting forces per metre of elevation: in heave, in surge divided by ω², and in
-    pitch divided by ω². Pitch refers to the surface.
+    mass and damping: heave, surge, coupling of surge with pitch, pitch. Rows 9 to 11 are the
+    exciting forces per metre of elevation in heave, and in surge and pitch divided by ω².
 
     Raises
     ------
-    UsageError
-        Capytaine, version 3 or newer, is not installed.
+    UsageError Capytaine, version 3 or newer, is not installed.
     """
     try:
         import capytaine

@@ -21,8 +21,7 @@ def greatest_of(deviation: float, period: float, duration: float) -> float:
     Parameters
     ----------
     deviation : standard deviation σ, in the unit of the result
-    period : zero-crossing period [s]
-    duration : duration for which the maximum is computed [s]
+    period, duration : zero-crossing period, and duration for which the maximum is computed [s]
     """
     if not deviation > 0.0 or isnan(period):
         return 0.0
@@ -57,8 +56,7 @@ class FatigueCurve:
 
     Attributes
     ----------
-    slope : exponent m of the curve
-    logarithm : log10 of K at zero mean tension
+    slope, logarithm : exponent m, and log10 of K at zero mean tension
     by_mean : decrease of log10 K for a mean tension equal to the breaking load
     range : meaning of R: range of `stress` in the steel [MPa], or range of tension as a `share` of
         the breaking load
@@ -107,11 +105,9 @@ class PieceFatigue:
     Attributes
     ----------
     life : time until the damage is 1 [years]
-    life_low, life_high : lives for standard deviations of tension that are larger and smaller by
-        the fraction `BAND`
+    life_low, life_high : lives for standard deviations of tension larger and smaller by `BAND`
     unknown : reason why there are no values
-    life_half_cut_off, life_twice_cut_off : lives for half and for twice the cut-off frequency of
-        the waves
+    life_half_cut_off, life_twice_cut_off : lives for half and for twice the cut-off frequency
     """
 
     index: int

@@ -41,26 +41,24 @@ CYLINDER_ADDED, SPHERE_ADDED, BODY_ADDED = 1.0, 0.5, 1.0
 class LumpedLine:
     """Line of n lumped masses with n - 1 springs between the masses, free end first.
 
-    The last mass does not move. Unit vectors point down the line.
+    The last mass does not move. Unit vectors point down the line. Normal and tangential values are
+    for motion normal to the line and along the line.
 
     Attributes
     ----------
     position : (n, 3) position east, north, and up from the surface [m]
-    mass : (n,) mass of the nodes [kg]
-    added_across, added_along : (n,) added mass normal and tangential to the line [kg]
-    water_across, water_along : (n,) mass of water displaced, for the wave pressure normal and
-        tangential to the line [kg]; the tangential mass of a cable or chain is 0
+    added_across, added_along : (n,) normal and tangential added mass [kg]
+    water_across, water_along : (n,) mass of displaced water for normal and tangential wave pressure
+        [kg]; the tangential mass of a cable or chain is 0
     across_drag, along_drag, any_drag : (n,) K of the drag K|v|v for normal flow, for tangential
         flow, and for flow in any direction [N/(m/s)²]
-    tangent : (n, 3) unit vectors along the line at the nodes
-    tension : (n-1,) tension of the springs in equilibrium [N]
-    stiffness : (n-1,) stiffness of the springs, dT/d(length) [N/m]
-    spring : (n-1, 3) unit vectors along the springs
+    tangent, spring : (n, 3), (n-1, 3) unit vectors at the nodes and along the springs
+    tension, stiffness : (n-1,) tension of the springs [N], and their stiffness dT/d(length) [N/m]
     span : (n-1,) stretched lengths of the springs [m]
     current : (n, 3) current at the nodes [m/s]
-    piece_spring : (pieces,) index of each piece's first spring. A piece of the top float has the
-        first spring below the float; a piece on the seabed has -1
-    piece_below : (pieces,) index of each piece's second spring; `piece_spring` if there is none
+    piece_spring, piece_below : (pieces,) indices of each piece's first and second spring. A piece
+        of the top float has the first spring below the float, a piece on the seabed has -1, and a
+        piece with one spring has this spring twice
     piece_node : (pieces,) node at the upper end of each piece; -1 on the seabed
     top_pieces : number of pieces of the top float, with the pieces that the float carries
     inextensible : labels of cables with unknown stiffness

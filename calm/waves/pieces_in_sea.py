@@ -102,15 +102,15 @@ class MooringInSea:
     components : results for the pieces, from the top down
     slack : labels of the pieces that become slack
     cut_off : cut-off frequency of the waves [rad/s]
-    band : range of measured to computed tension; None for a line below the surface and for a float
-        with a prescribed response
-    follower_std : standard deviation of the tension below a float that follows every wave [N]; None
-        for a line below the surface, and for all but the highest sea state
+    band : range of measured to computed tension; None below the surface or for a prescribed
+        response
+    follower_std : standard deviation of the tension below a float that follows every wave [N]; only
+        in the highest sea state
     pitch_std : standard deviation of the pitch of the float [degrees]; None if unknown
     moments : spectral moments of tension, for the three cut-off frequencies in `CutOffs`
     spectrum : angular frequencies [rad/s], and spectrum of the tension at the top [N² s/rad]
-    along : depth [m] of points down the line, and mean, standard deviation and maximum of the
-        tension at these points [N]
+    along : depths down the line [m], and mean, standard deviation and maximum of the tension there
+        [N]
     """
 
     sea: SeaState

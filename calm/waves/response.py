@@ -39,7 +39,7 @@ _WEIGHTS = _WEIGHTS / _WEIGHTS.sum()
 
 @dataclass(frozen=True)
 class WaveResponse:
-    """Transfer functions of a line per metre of wave elevation, at the frequencies of a sea state.
+    """Transfer functions of a line per metre of wave elevation, at f frequencies of a sea state.
 
     Attributes
     ----------
@@ -47,7 +47,7 @@ class WaveResponse:
     weight : (f,) variance of the elevation that each frequency represents [m²]
     motion : (f, n, 3) displacement of the nodes [m/m]
     pull : (f, n-1) change of the tension in the springs [N/m]
-    pitch : (f,) pitch of the float [rad/m], positive if the top moves in the direction of the waves
+    pitch : (f,) pitch of the float [rad/m], positive if the top moves with the waves
     """
 
     omega: Floats
@@ -133,14 +133,16 @@ class Waves:
 class _Afloat(NamedTuple):
     """Dynamic stiffness of a float and exciting forces on the float, without drag.
 
-    The four degrees of freedom are the translations of the bail, and pitch.
+    The degrees of freedom are the three translations of the bail, and pitch.
 
     Attributes
     ----------
-    held, pushed : (f, 4, 4) stiffness, and (f, 4) exciting force per metre of elevation
-    ways : (p, 3, 4) motion of the points at which drag acts, per unit of each degree of freedom
+    held : (f, 4, 4) stiffness
+    pushed : (f, 4) exciting force per metre of wave elevation
+    ways : (p, 3, 4) motion of p points with drag, per unit of each degree of freedom
     water : (f, p, 3) velocity of the water at these points
-    turning, slope : factor of the rotational drag on the bottom, and (f,) slope of the waves
+    turning : factor of the rotational drag on the bottom
+    slope : (f,) slope of the waves, for the rotational drag
     """
 
     held: Complexes
@@ -215,14 +217,13 @@ def respond(
     ----------
     buoy : float at the surface; None for a line below the surface
     drag_factor : factor on the linear drag, for a sensitivity test
-    first : initial estimate of the flow past the nodes, such as the flow in a similar sea
+    first : initial estimate of the flow past the nodes
     once : whether to use the flow `first` without iteration
 
     Returns
     -------
-    The response, and the flow past the nodes, for which drag is linearised. The flow (n + 1, 3) has
-    standard deviations along the axes of each node [m/s], and a last row for the pitch of the
-    float.
+    The response, and the flow past the nodes (n + 1, 3): standard deviations along the axes of each
+    node [m/s], and a last row for the pitch of the float.
     """
     omega = waves.omega
     steps = np.diff(omega, prepend=omega[0], append=omega[-1])
