@@ -76,8 +76,9 @@ def chart_solve(
 ) -> ChartAnswer:
     """Find every cable that has three given quantities, or the reason why there is none.
 
-    Errors are at most 1e-9 rad for angles, and 1e-9 of the value for other quantities. For a cable
-    that turns by less than 0.01 rad, the tension is less accurate.
+    Errors are at most 1e-9: in rad for angles, relative to the length for distances, and otherwise
+    relative to the value. The tension is less accurate for a cable that turns by less than 0.01
+    rad.
 
     Parameters
     ----------
@@ -253,7 +254,7 @@ def family(what: str) -> NoEquilibrium:
 
 
 def contradiction(known: Mapping[str, float]) -> NoEquilibrium | None:
-    """Find a contradiction, at every K, between the quantities of a sinking cable.
+    """Find a contradiction between the quantities of a sinking cable that does not depend on K.
 
     The messages also suit the mirror image of a buoyant cable. The result is None if there is no
     contradiction.

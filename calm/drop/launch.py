@@ -1,6 +1,6 @@
 """Loads on the line while the anchor, deployed last, falls to the seabed.
 
-The resolution is that of the design check. `calm.drop.plan` computes the same fall in more detail.
+The resolution is half that of a drop plan (`calm.drop.plan`).
 """
 
 from dataclasses import dataclass, replace

@@ -331,7 +331,7 @@ def _equilibrium(mooring: Design) -> Result | None:
 
 
 def _split(state: ChainState, toward: Floats) -> tuple[float, float]:
-    """Return the distances of the anchor in the direction `toward` and to its right [m]."""
+    """Return the distances of the anchor in a direction, and to the right of this direction [m]."""
     (east, north), (x, y) = state.node[-1, :2].tolist(), toward.tolist()
     return east * x + north * y, east * y - north * x
 

@@ -202,7 +202,7 @@ class Task:
     faults: tuple[Fault, ...] | None = None
 
     def columns(self, start: int, stop: int) -> tuple[Profiles, dict[str, NDArray[np.float64]]]:
-        """Estimate the line at the times from `start` to `stop`, in the most likely currents.
+        """Estimate depths and other results at the times from `start` to `stop`, in likely currents.
 
         Return the profiles, and further columns with the names of `OF_MOTION`.
         """

@@ -101,7 +101,7 @@ def law_near(task: Task) -> tuple[LinearLaw | None, list[Suspect]]:
 
 
 class Diagnosis:
-    """Search for faults in a record, which are weighed by the likelihood of the pressures."""
+    """Search for faults in a record; each fault is weighed by the likelihood of the pressures."""
 
     def __init__(self, task: Task, law: LinearLaw, causes: Sequence[Suspect] = ()) -> None:
         self.causes = causes

@@ -148,15 +148,13 @@ def write_depths(
 ) -> list[str]:
     """Write a copy of an instrument file with depths, standard deviations and flags added.
 
+    Return the names of the instruments without depths, because they match no point of the line.
+
     Parameters
     ----------
     result : dataset of `calm motion`
     gap : longest gap over which depths are interpolated
     inputs : names and hashes of the source files, for the history
-
-    Returns
-    -------
-    Names of the instruments without depths, because they match no point of the line.
     """
     import xarray as xr
 

@@ -34,7 +34,7 @@ class LineResponse:
         return (forward or self.forward).depths(read.level, read.u * factor, read.v * factor)
 
     def linear(self, read: ReadCurrents, logs: Floats) -> Linear:
-        """Return the depths and their slopes, in the currents multiplied by exp(`logs`) (n, k)."""
+        """Return the depths in the currents multiplied by exp(`logs`) (n, k), and their derivatives."""
         factor = np.exp(logs)
         u, v = read.u * factor, read.v * factor
         there, slopes = self.forward.slopes(read.level, u, v)
@@ -73,8 +73,8 @@ class Forward:
     """A mooring with factors on its line, to be solved in many currents.
 
     The p points of the line are the clamped items from the top down, then the upper ends of the
-    components in file order. Currents u and v [m/s], and the depths of their levels [m], are (n, k)
-    for n times and k levels.
+    components in file order. Currents u and v [m/s] and their depths [m] are (n, k), for n times
+    and k levels.
     """
 
     def __init__(self, mooring: Design, factors: Mapping[str, float]) -> None:

@@ -106,8 +106,8 @@ def currents_on_line(
 ) -> tuple[CurrentMeasurements, list[str]]:
     """Match the instruments of a current file to the line by serial number or nominal depth.
 
-    The levels of matched instruments get the labels of parts of the line, and move with the line.
-    Also return notes on the matches.
+    The levels of matched instruments get the labels of parts of the line and move with the line.
+    Also return notes.
     """
     if any(one.label) or path.is_dir() or not cf_files.holds_arrays(path):
         return one, []

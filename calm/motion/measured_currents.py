@@ -163,7 +163,7 @@ class Columns:
 
     @property
     def stays(self) -> slice:
-        """Columns of the unknowns that are constant except for steps: datum, zeros and places."""
+        """Columns of the unknowns that are constant except for steps: datum, zeros and positions."""
         return slice(self.datum.start, self.place.stop)
 
 
@@ -290,7 +290,7 @@ class CurrentSmoother:
         return forward.depths(self.knot_depth[times], *self.currents(state))
 
     def forward(self, factor: Floats) -> Forward:
-        """Return the mooring with factors of given logarithms (f,), from a small cache."""
+        """Return the mooring with factors on its line, given as logarithms (f,), from a small cache."""
         key = tuple(factor.tolist())
         if key not in self._forwards:
             factors = dict(zip(self.names, np.exp(factor).tolist(), strict=True))
@@ -605,7 +605,7 @@ class CurrentSmoother:
         return self.forward(self.factor)
 
     def read(self, times: slice) -> ReadCurrents:
-        """Return the estimated currents at the knots."""
+        """Return the estimated currents at the interpolation knots, for a slice of times."""
         currents = self.currents(self.state[times, self.columns.current])
         return ReadCurrents(self.knot_depth[times], *currents)
 

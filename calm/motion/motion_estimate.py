@@ -49,7 +49,7 @@ RARE = 0.1  # a note is added if the share of times with two sensors is below th
 def shared_times(measured: MooringMeasurements, currents: bool) -> list[str]:
     """Return a note if few times have pressures from two or more sensors.
 
-    If there is no such time and no current was measured, a UsageError is raised.
+    A UsageError is raised if no time has such pressures and no current was measured.
     """
     if len(measured.label) < 2:
         return []

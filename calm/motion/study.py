@@ -228,7 +228,7 @@ def judged(
 
 
 def knockdown(used: MooringMeasurements) -> Floats:
-    """Return the depth (n,) of the highest sensor with a pressure, minus its least depth [m]."""
+    """Return the knockdown (n,) of the highest sensor with a pressure, from its least depth [m]."""
     down = np.full(len(used.time), np.nan)
     for j in range(len(used.label)):
         depth = used.depth[:, j]
