@@ -244,7 +244,7 @@ class Mover:
         step: float,
         slowest: float,
     ) -> Floats:
-        """Compute the Newton correction (n+1, 4) of nodes and tensions; the last tension is unused."""
+        """Compute the Newton correction (n+1, 4) of nodes and tensions; the last one is unused."""
         chain, on = self.chain, self.chain.elements
         node = np.ascontiguousarray(node.T)
         velocity = (node - before.T) / step

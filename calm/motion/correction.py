@@ -202,9 +202,10 @@ class Task:
     faults: tuple[Fault, ...] | None = None
 
     def columns(self, start: int, stop: int) -> tuple[Profiles, dict[str, NDArray[np.float64]]]:
-        """Estimate depths and other results at the times from `start` to `stop`, in likely currents.
+        """Estimate the depths of the line, and related results, in the most likely currents.
 
-        Return the profiles, and further columns with the names of `OF_MOTION`.
+        The times are from `start` to `stop`. Return the profiles, and columns with the names of
+        `OF_MOTION`.
         """
         times, smoother = slice(start, stop), self.smoother
         one = self.measured.at(times)

@@ -34,7 +34,10 @@ class LineResponse:
         return (forward or self.forward).depths(read.level, read.u * factor, read.v * factor)
 
     def linear(self, read: ReadCurrents, logs: Floats) -> Linear:
-        """Return the depths in the currents multiplied by exp(`logs`) (n, k), and their derivatives."""
+        """Return the depths, and their derivatives, in the currents multiplied by exp(`logs`).
+
+        `logs` is (n, k). The derivatives are by `logs` and by the logarithms of the common factors.
+        """
         factor = np.exp(logs)
         u, v = read.u * factor, read.v * factor
         there, slopes = self.forward.slopes(read.level, u, v)

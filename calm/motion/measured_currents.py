@@ -163,7 +163,7 @@ class Columns:
 
     @property
     def stays(self) -> slice:
-        """Columns of the unknowns that are constant except for steps: datum, zeros and positions."""
+        """Columns of the unknowns that are constant except for steps: datum, zeros, positions."""
         return slice(self.datum.start, self.place.stop)
 
 
@@ -290,7 +290,7 @@ class CurrentSmoother:
         return forward.depths(self.knot_depth[times], *self.currents(state))
 
     def forward(self, factor: Floats) -> Forward:
-        """Return the mooring with factors on its line, given as logarithms (f,), from a small cache."""
+        """Return the mooring with line factors of given logarithms (f,), from a small cache."""
         key = tuple(factor.tolist())
         if key not in self._forwards:
             factors = dict(zip(self.names, np.exp(factor).tolist(), strict=True))
