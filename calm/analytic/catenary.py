@@ -57,16 +57,15 @@ def position(
 class Catenary:
     """A line suspended between two points, defined by the forces at its upper end.
 
-    Fields may be arrays that broadcast against each other.
-
     Parameters
     ----------
-    horizontal : horizontal tension H > 0 [N]
-    vertical : vertical tension V at the upper end [N]; must be positive if `seabed` is set
+    horizontal, vertical : tension H > 0 and V at the upper end [N]; V > 0 if `seabed` is set
     length : unstretched length L > 0 [m]
     weight : weight in water per unstretched metre, > 0 [N/m]
     stiffness : axial stiffness EA [N]; infinite for an inextensible line
     seabed : whether the lower part of the line may lie on a level seabed without friction
+
+    Fields may be arrays that broadcast against each other.
 
     Raises
     ------

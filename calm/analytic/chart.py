@@ -19,17 +19,17 @@ from calm.errors import NoEquilibrium, UsageError
 
 @dataclass(frozen=True)
 class ChartSolution:
-    """One cable in a uniform current.
+    """One cable in a uniform current, from its lower end A up to its upper end B.
 
     Parameters
     ----------
-    phi_a, phi_b : angle from the current to the upward direction of the cable (from A to B) at each
-        end [rad], from −π to π; negative if the cable descends
-    tension_a, tension_b : tension at the lower and upper end [N]
+    phi_a, phi_b : angle from the current to the upward direction of the cable at each end [rad],
+        from −π to π; negative if the cable descends
+    tension_a, tension_b : tension at each end [N]
     height, distance : height of B above A, and distance of B downstream of A [m]
     length : length of the cable [m]
-    h0 : unit of length of the chart [m], which is the tension at the apex of the curve divided by
-        the weight per metre; 0 for a straight cable
+    h0 : unit of length of the chart [m]: tension at the apex of the curve divided by weight per
+        metre; 0 for a straight cable
     """
 
     phi_a: float

@@ -60,8 +60,8 @@ def check_k(k: float) -> float:
 class Branch:
     """One branch of the curve, rotated so that it extends downstream and its apex is at ψ = 0.
 
-    A point is given by the parameter λ, which is negative before the apex. On the first branch, ψ =
-    φ. On the second branch, ψ = 180° − φ, and distances are positive upstream.
+    A point is given by the parameter λ, negative before the apex. The first branch has ψ = φ. The
+    second branch has ψ = 180° − φ, and distances positive upstream.
 
     Parameters
     ----------

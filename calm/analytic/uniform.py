@@ -1,24 +1,24 @@
 """Shape of a line in a uniform horizontal stream, with a quadratic normal drag R sin²φ per metre.
 
-R is the drag per metre of a line normal to the stream, ½ρ Cn D V². Coordinates are as in `Station`.
-With the arc length s up the line and a tangential drag F,
+R = ½ρ Cn D V² is the drag per metre of a line normal to the stream, and F the tangential drag. With
+the arc length s up the line and coordinates as in `Station`,
 
     dT/ds = w sin φ + F,      T dφ/ds = −(R sin²φ − w cos φ),      dx/ds = cos φ,      dz/ds = sin φ
 
 Without weight, T is constant and the shape is a catenary turned by 90°. Without tangential drag,
 the difference in tension between two points is w times their difference in height.
 
-Sources: L. Pode, *Tables for computing the equilibrium configuration of a flexible cable in a
-uniform stream*, David Taylor Model Basin report 687, 1951; E. E. Zajac, Bell System Technical
-Journal 36, 1957, for the critical angle.
-
-Pode's cable functions are for a heavy line with constant F. The reference point, with tension T₀,
-is where the line is normal to the stream. With p = w/R and f = F/R,
+Pode's cable functions are for a heavy line with constant F. They refer to the point where the line
+is normal to the stream, with tension T₀. With p = w/R and f = F/R,
 
     τ = T/T₀ = exp ∫ (f + p sin α)/(sin²α − p cos α) dα,      R s/T₀ = σ = ∫ τ dα/(sin²α − p cos α),
 
 where the integrals run from φ to 90°. For ξ and η, replace τ in the integral for σ by τ cos α and
 τ sin α. The functions satisfy τ − 1 = p η + f σ. Pode tabulates f = 0.01, 0.02 and 0.03.
+
+Sources: L. Pode, *Tables for computing the equilibrium configuration of a flexible cable in a
+uniform stream*, David Taylor Model Basin report 687, 1951; E. E. Zajac, Bell System Technical
+Journal 36, 1957, for the critical angle.
 """
 
 from typing import NamedTuple

@@ -219,12 +219,8 @@ def unequal_cable(
     """Return the shape of a towed cable for D = 1 and k_t ≠ k_n.
 
     Parameters and errors are as in `quadratic_cable`, but the drags contain V instead of V², and
-    the angle must be less than π away from α_d.
-
-    Notes
-    -----
-    With |α − α_d| = 2 arctan e^(−m), where m runs from −∞ to ∞, the arc length is ∫ T dm/√((μg)² +
-    (k_n V)²).
+    the angle must be less than π away from α_d. The arc length is ∫ T dm/√((μg)² + (k_n V)²), with
+    |α − α_d| = 2 arctan e^(−m).
     """
     from scipy.optimize import brentq
 

@@ -74,13 +74,13 @@ def shared_times(measured: MooringMeasurements, currents: bool) -> list[str]:
 def fitted(requested: Sequence[str] = (), currents: bool = True) -> tuple[str, ...]:
     """Return the names of the factors to estimate: the default factors and the requested factors.
 
-    By default, the drag of cables and the drag of rigid pieces each have a factor. Without measured
-    currents, the length of cables has a factor instead of their drag, because factors on all drag
-    have the same effect as a factor on the currents.
+    The default factors multiply the drag of cables and the drag of rigid pieces. Without measured
+    currents, they multiply the drag of rigid pieces and the length of cables.
     """
     for name in requested:
         if name not in FACTORS:
             raise UsageError(unknown(f"--fit: `{name}` cannot be estimated", name, FACTORS))
+    # a factor on all drag cannot be distinguished from a factor on unmeasured currents
     usual = ("cable_drag", "rigid_drag") if currents else ("rigid_drag", "length")
     return tuple(name for name in FACTORS if name in requested or name in usual)
 
