@@ -92,7 +92,8 @@ def chart_solve(
 
     Raises
     ------
-    UsageError The number of given quantities is not three, or a value is outside its range.
+    UsageError
+        The number of given quantities is not three, or a value is outside its range.
     """
     given = {
         "phi_a": phi_a, "phi_b": phi_b, "tension_a": tension_a, "tension_b": tension_b,

@@ -47,7 +47,8 @@ def neutral_line(
 
     Raises
     ------
-    ValueError A parameter is outside its range.
+    ValueError
+        A parameter is outside its range.
     """
     s, t, start, r = (np.asarray(value, float) for value in (arc, tension, angle, normal_drag))
     if not (np.all(t > 0.0) and np.all(r > 0.0)):
@@ -113,8 +114,9 @@ def tension_ratio(
 
     Raises
     ------
-    ValueError The two angles are on different sides of the critical angle, or a value is outside
-        its range.
+    ValueError
+        The two angles are on different sides of the critical angle, or a value is outside its
+        range.
     """
     branch = branch_of(start, weight_ratio, friction, law)
     m = branch.parameter(_checked(angle))
@@ -151,8 +153,9 @@ def heavy_line(
 
     Raises
     ------
-    ValueError A value is outside its range, or the tension of a straight line falls to zero within
-        the arc.
+    ValueError
+        A value is outside its range, or the tension of a straight line falls to zero within the
+        arc.
     """
     if not (0.0 < tension < np.inf and 0.0 < normal_drag < np.inf):
         raise ValueError("the tension and the normal drag of a heavy line must be above 0")
@@ -246,7 +249,8 @@ def cable_functions(angle: ArrayLike, weight_ratio: float, friction: float = 0.0
 
     Raises
     ------
-    ValueError An angle or a ratio is outside its range.
+    ValueError
+        An angle or a ratio is outside its range.
     """
     branch = branch_of(0.5 * np.pi, weight_ratio, friction, "constant")
     angles = np.asarray(angle, float)

@@ -56,8 +56,7 @@ def straight_angle(weight: ArrayLike, normal_drag: ArrayLike, exponent: Literal[
 
     Parameters
     ----------
-    weight : weight per metre in the fluid, μg > 0 [N/m]
-    normal_drag : k_n V^D > 0 [N/m]
+    weight, normal_drag : μg > 0 and k_n V^D > 0, per metre [N/m]
     exponent : exponent D of the velocity in the drag
 
     Raises
@@ -130,7 +129,8 @@ def quadratic_cable(
 
     Raises
     ------
-    ValueError A parameter is outside its range.
+    ValueError
+        A parameter is outside its range.
     """
     arcs = np.asarray(arc, float)
     check_arc(arcs, np.asarray(tension, float))
@@ -147,8 +147,7 @@ def straight_cable(
 
     Parameters
     ----------
-    arc : distance s ≥ 0 along the cable from the lower end [m]
-    tension : T₀ at the lower end [N]
+    arc, tension : distance s ≥ 0 from the lower end [m], and tension T₀ there [N]
     angle : α_d [rad]
     weight, rubbing : μg, and tangential drag per metre at this angle [N/m]
     """

@@ -79,14 +79,15 @@ def towed(
 ) -> ChainState:
     """Compute the shape of the line that streams behind the ship, with its lower end at the origin.
 
-    A smaller `ship.streamed` than the distance under tow gives the shape of a slower tow. For a
-    larger one, the free end is held at that distance.
+    If `ship.streamed` is shorter than the distance under tow, the shape is that of a slower tow. If
+    it is longer, the free end is held at that distance.
 
     Raises
     ------
-    NoEquilibrium ``not-converged`` if no steady shape is found; ``no-equilibrium`` if nothing has
-        drag.
-    UsageError The line extends farther than `ship.streamed` at any ship speed.
+    NoEquilibrium
+        ``not-converged`` if no steady shape is found; ``no-equilibrium`` if nothing has drag.
+    UsageError
+        The line extends farther than `ship.streamed` at any ship speed.
     """
     across = line.normal_drag[~line.directional]
     if not (anchor.drag or any(k.any() for k in (line.tangential_drag, across, line.clamp_drag))):
@@ -121,8 +122,9 @@ def fall(
 
     Raises
     ------
-    NoEquilibrium ``anchor-lifts`` if the anchor does not reach the seabed; ``not-converged`` if a
-        time step has no solution.
+    NoEquilibrium
+        ``anchor-lifts`` if the anchor does not reach the seabed; ``not-converged`` if a time step
+        has no solution.
     """
     mover = Mover(chain_of(line, fineness.bars), _sea(water), anchor)
     bottom = line.anchor_height - water.depth

@@ -112,7 +112,8 @@ class Mover:
 
         Raises
         ------
-        NoStep Newton's method does not converge.
+        NoStep
+            Newton's method does not converge.
         """
         variation = self.variation(state)
         gently = gently or not state.velocity.any()

@@ -226,10 +226,12 @@ def drop_plan(
 
     Raises
     ------
-    UsageError The ship is too slow through the water, the line is shorter than `streamed`, or the
-        file contains a tow or several legs.
-    NoEquilibrium As in `Design.solve`; also ``anchor-lifts`` if the anchor does not pull the line
-        down, and ``not-converged`` if a time step has no solution.
+    UsageError
+        The ship is too slow through the water, the line is shorter than `streamed`, or the file
+        contains a tow or several legs.
+    NoEquilibrium
+        As in `Design.solve`; also ``anchor-lifts`` if the anchor does not pull the line down, and
+        ``not-converged`` if a time step has no solution.
     """
     leg = mooring.moored
     ship_speed = in_si("ship_speed", ship_speed, "speed")

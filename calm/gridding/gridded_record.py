@@ -162,8 +162,8 @@ def grid(
 
     Raises
     ------
-    InputError, UsageError A file cannot be read or does not belong to the mooring, or too few
-        instruments remain.
+    InputError, UsageError
+        A file cannot be read or does not belong to the mooring, or too few instruments remain.
     """
     if isinstance(depths, MotionEstimate):
         depths = depths.dataset

@@ -148,9 +148,9 @@ def own_errors(depth: Floats, still: Floats, learnt: bool) -> Floats:
 
     Errors are correlated over a quarter of the line. The error at a point is
 
-    - without `learnt` currents: a share of the knockdown of the point; - with `learnt` currents,
-    which absorb such errors: a share of the contribution of each stretch of
-      the line below the point, plus a smaller share of the knockdown of the point.
+    - without `learnt` currents: a share of the knockdown of the point;
+    - with `learnt` currents, which absorb such errors: a share of the contribution of each stretch
+      of the line below the point, plus a smaller share of the knockdown of the point.
     """
     if not learnt:
         own = np.maximum(np.nan_to_num(depth - still), 0.0)

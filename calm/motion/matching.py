@@ -151,7 +151,8 @@ def matched_by_place(
 
     Raises
     ------
-    UsageError A nominal depth is missing, there are more sensors than instruments, or the match is
+    UsageError
+        A nominal depth is missing, there are more sensors than instruments, or the match is
         ambiguous.
     """
     lacking = [one.named for one in given if not np.isfinite(one.nominal)]
@@ -177,13 +178,13 @@ CLEAR = 10.0  # a match is unique if the second-best order of instruments costs 
 def points_of(series: Sequence[Identity], line: LinePlaces) -> tuple[dict[int, int], list[str]]:
     """Match series to points by label, serial number or nominal depth.
 
-    The nominal depths, in order down the line, match series that have neither a label nor a
-    matching serial number. Return the index of the point for each index of a matched series, and
-    notes.
+    A series without a label or a matching serial number is matched by nominal depth, in order down
+    the line. Return the index of the point for each index of a matched series, and notes.
 
     Raises
     ------
-    UsageError No series matches a point, or the match by nominal depth is ambiguous.
+    UsageError
+        No series matches a point, or the match by nominal depth is ambiguous.
     """
     who = [(one.label, one.serial, one.nominal, one.source) for one in series]
     first = [who.index(one) for one in who]  # the bins of a profiler are one instrument

@@ -668,8 +668,8 @@ class CurrentSmoother:
     def by_meters(self, times: NDArray[np.int64]) -> tuple[LinearLaw, ReadCurrents, Linear]:
         """Return a linear model of the pressures, with currents from the meters alone.
 
-        Also return these currents at the knots, and depths of the line in these currents. The
-        slopes of the depths are with respect to the logarithm of a factor on all speeds.
+        Also return these currents at the knots, and the depths of the line. The derivatives of the
+        depths are with respect to the logarithm of a factor on all speeds.
         """
         one, at, factor, law = self.measured, self.columns, self.factor, self.meter_law()
         wide = WIDER**2 * law.steady

@@ -320,8 +320,8 @@ def estimate_motion(
 
     Raises
     ------
-    InputError, UsageError A file cannot be read or does not belong to the mooring, or too few
-        sensors are left.
+    InputError, UsageError
+        A file cannot be read or does not belong to the mooring, or too few sensors are left.
     """
     refuse_all_but_moorings(mooring.file)
     with TemporaryDirectory() as name:

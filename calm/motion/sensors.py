@@ -217,8 +217,9 @@ def plausible(
 
     These readings are implausible:
 
-    - readings far shallower than `place`, the depth of the sensor in still water [m]; - readings
-    far below the seabed, whose depth is `seabed` [m]; - readings of a stuck sensor.
+    - readings far shallower than `place`, the depth of the sensor in still water [m];
+    - readings far below the seabed, whose depth is `seabed` [m];
+    - readings of a stuck sensor.
 
     If most readings are too shallow or too deep, all are kept. If readings on deck show that
     pressures are absolute, they are corrected. Of several readings at one time, the first is kept.
@@ -348,8 +349,9 @@ def unusable(labels: Sequence[str], depth: Floats, place: Floats) -> dict[str, s
 
     Raises
     ------
-    UsageError Two labels are exchanged, or at least half of the sensors are far from their places
-        on the line.
+    UsageError
+        Two labels are exchanged, or at least half of the sensors are far from their places on the
+        line.
     """
     reasons: dict[str, str] = {}
     far_off: dict[str, str] = {}

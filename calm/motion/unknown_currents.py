@@ -165,11 +165,8 @@ def learn_currents(
 ) -> Common:
     """Estimate the distribution of the current speeds jointly with the common unknowns.
 
-    Parameters
-    ----------
-    measured : measurements with the interpolation knots as levels
-    names : factors to estimate
-    tell : function that receives progress messages
+    The levels of `measured` are interpolation knots, `names` are the factors to estimate, and
+    `tell` receives progress messages.
 
     Raises
     ------

@@ -67,7 +67,6 @@ class WaveAnalysis:
 
     Attributes
     ----------
-    states : results for the sea states, in the given order
     accuracy : estimated errors in the highest and in the shortest sea
     fatigue : fatigue of each piece, from the shares of time of the sea states
     warnings : warnings about assumptions

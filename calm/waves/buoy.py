@@ -351,7 +351,8 @@ def panel_response(profile: Floats, density: float, gravity: float) -> Complexes
 
     Raises
     ------
-    UsageError Capytaine, version 3 or newer, is not installed.
+    UsageError
+        Capytaine, version 3 or newer, is not installed.
     """
     try:
         import capytaine

@@ -91,8 +91,7 @@ class Waves:
     ----------
     omega : (f,) angular frequencies [rad/s]
     toward : direction in which the waves travel [degrees], clockwise from north
-    depth : water depth [m]
-    density, gravity : density of the water [kg/m³] and acceleration of gravity [m/s²]
+    depth, density, gravity : water depth [m], density [kg/m³], and acceleration of gravity [m/s²]
     """
 
     omega: Floats
