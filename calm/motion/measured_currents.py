@@ -7,8 +7,8 @@ The unknowns at each time are
 - the tide.
 
 The unknowns of the whole record are drag factors, a depth error common to all sensors (the datum),
-and sensor offsets. Datum and offsets may change in rare steps. Most priors are normal. Errors of
-meters and sensors, and values and steps of datum and sensor positions, have Student's t
+and sensor offsets. Datum and sensor positions may change in rare steps. Most priors are normal.
+Errors of meters and sensors, and values and steps of datum and sensor positions, have Student's t
 distributions.
 
 The method is a Kalman smoother with Gauss-Newton steps over the whole record. Expectation and
@@ -163,7 +163,7 @@ class Columns:
 
     @property
     def stays(self) -> slice:
-        """Columns of the unknowns that are constant except for steps: datum, zeros, positions."""
+        """Columns of unknowns that are constant or change in steps: datum, zeros, positions."""
         return slice(self.datum.start, self.place.stop)
 
 
