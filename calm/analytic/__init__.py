@@ -1,9 +1,11 @@
 """Closed-form solutions for lines and cables, which are independent of the march and validate it.
 
-`catenary` has a line in still water. `uniform` has weightless and heavy lines in a uniform stream,
-and Pode's cable functions. `villain_guillot` has towed cables with a drag that is linear or
-quadratic in each velocity component. `chart` has Braconnot's charts. Units are SI and radians. Each
-module states its equations, their range of validity and their source.
+Units are SI and radians. The solutions are for
+
+- a line in still water (`catenary`);
+- weightless and heavy lines in a uniform stream, and Pode's cable functions (`uniform`);
+- towed cables with drag linear or quadratic in each velocity component (`villain_guillot`);
+- Braconnot's charts (`chart`).
 """
 
 from calm.analytic import catenary as catenary

@@ -1,13 +1,12 @@
 """Catenary: a line in still water, inextensible or elastic, suspended or partly on the seabed.
 
-With the horizontal pull H, the vertical pull V at the upper end and V₀ = V − w s at a distance s
-below it (unstretched), an inextensible line of weight w per metre spans
+The horizontal tension is H. The vertical tension is V at the upper end, and V₀ = V − w s at an
+unstretched distance s below. With the weight w per metre, an inextensible line spans
 
     x = (H/w) [asinh(V/H) − asinh(V₀/H)],      z = [√(H² + V²) − √(H² + V₀²)] / w.
 
-Linear stretch adds H s/EA to x and (V² − V₀²)/(2 w EA) to z, if w is the weight per unstretched
-metre. On a level seabed without friction V₀ does not fall below 0, and the remaining length, L −
-V/w, lies on the seabed with tension H.
+Linear stretch adds H s/EA to x and (V² − V₀²)/(2 w EA) to z; w is then per unstretched metre. On a
+level seabed without friction, the length L − V/w lies on the seabed with tension H.
 
 Source: H. M. Irvine, *Cable Structures*, MIT Press, 1981, chapter 2.
 """
@@ -24,21 +23,19 @@ from calm.analytic.hodograph import Floats
 def position(
     arc: ArrayLike, horizontal: ArrayLike, vertical: ArrayLike, weight: ArrayLike
 ) -> tuple[Floats, Floats]:
-    """Return the position of a point on an inextensible line, relative to a point with known
-    tension.
+    """Return the position of one point on an inextensible line relative to another.
 
     Parameters
     ----------
-    arc : distance along the line from the known point [m], positive up the line and negative down
-        the line
+    arc : distance along the line from the known point [m], positive up the line
     horizontal, vertical : components of the tension at the known point [N]; `vertical` is positive
-        if the line rises from this point, and x takes the sign of `horizontal`
+        if the line rises from this point
     weight : weight per metre, > 0 [N/m]
 
     Returns
     -------
-    x, z : horizontal distance and height of the other end of the arc, relative to the known point
-        [m]. Arrays broadcast against each other
+    x, z : horizontal distance, with the sign of `horizontal * arc`, and height relative to the
+        known point [m]
     """
     s, h, v, w = (np.asarray(value, float) for value in (arc, horizontal, vertical, weight))
     top = v + w * s
@@ -62,11 +59,10 @@ class Catenary:
 
     Parameters
     ----------
-    horizontal : horizontal tension H > 0 [N]
-    vertical : vertical tension V at the upper end [N]; must be positive if `seabed` is set
+    horizontal, vertical : tension H > 0 and V at the upper end [N]; V > 0 if `seabed` is set
     length : unstretched length L > 0 [m]
     weight : weight in water per unstretched metre, > 0 [N/m]
-    stiffness : axial stiffness EA [N]; infinite (the default) for an inextensible line
+    stiffness : axial stiffness EA [N]; infinite for an inextensible line
     seabed : whether the lower part of the line may lie on a level seabed without friction
 
     Fields may be arrays that broadcast against each other.
@@ -124,10 +120,7 @@ class Catenary:
     def position(self, arc: ArrayLike) -> tuple[Floats, Floats]:
         """Return the horizontal distance and height of a point, relative to the lower end [m].
 
-        Parameters
-        ----------
-        arc : unstretched length of the line between the lower end and the point, from 0 to `length`
-            [m]; broadcasts with the fields
+        `arc` is the unstretched length from the lower end to the point [m].
 
         Raises
         ------
@@ -162,25 +155,17 @@ def between(
 ) -> Catenary:
     """Find the catenary between two given points.
 
+    The upper end is at (x, z) to about 1e-13 of the length. There is only one such catenary.
+
     Parameters
     ----------
     x, z : horizontal distance (> 0) and height of the upper end, relative to the lower end [m]
     length, weight, stiffness, seabed : as in `Catenary`; if `seabed` is set, z must be positive
 
-    Returns
-    -------
-    Catenary : the catenary, whose upper end is at (x, z) to about 1e-13 of the length
-
     Raises
     ------
     ValueError
         A value is outside its range, or the line is too short or, with a seabed, too slack.
-
-    Notes
-    -----
-    The compliance matrix ∂(x, z)/∂(H, V) is symmetric and positive definite, so only one pair (H,
-    V) gives the required position. Newton's method converges to this pair if each step is halved
-    until the position error decreases.
     """
     if not isfinite(x + z + length + weight):
         raise ValueError("the dimensions of a catenary must be finite")
@@ -211,8 +196,9 @@ def _refuse_slack(x: float, z: float, length: float, weight: float, stiffness: f
 
 
 def _solve(x: float, z: float, compliance: float, seabed: bool) -> tuple[float, float]:
-    """Solve for the horizontal and vertical force (H, V), relative to the line's weight, for a line
-    of length 1 and compliance w L/EA.
+    """Solve for the forces (H, V) at the upper end, relative to the line's weight.
+
+    The line has the length 1 and the compliance w L/EA.
     """
     chord = hypot(x, z)
     if chord < 1.0:
@@ -224,6 +210,7 @@ def _solve(x: float, z: float, compliance: float, seabed: bool) -> tuple[float, 
     if seabed:
         v = max(v, z)
     miss_x, miss_z, jacobian = _miss(h, v, x, z, compliance, seabed)
+    # the jacobian is positive definite, so that Newton's method with halved steps converges
     for _ in range(200):
         xx, xz, zz = jacobian
         determinant = xx * zz - xz * xz
@@ -246,8 +233,9 @@ def _solve(x: float, z: float, compliance: float, seabed: bool) -> tuple[float, 
 def _miss(
     h: float, v: float, x: float, z: float, compliance: float, seabed: bool
 ) -> tuple[float, float, tuple[float, float, float]]:
-    """Return the position error of the upper end and ∂x/∂H, ∂x/∂V = ∂z/∂H, ∂z/∂V, for unit length
-    and weight.
+    """Return the position error of the upper end, and ∂x/∂H, ∂x/∂V = ∂z/∂H, ∂z/∂V.
+
+    The line has unit length and weight.
     """
     lifted = min(1.0, v) if seabed else 1.0
     bottom = v - lifted

@@ -1,8 +1,7 @@
 """Cable in a uniform current, determined by three of its seven quantities.
 
-The cable hangs in the plane of a uniform current, with drag only in the normal direction. A is its
-lower end, B its upper end. The problems that H. Braconnot's charts solve graphically are solved
-here on the same curve (`calm.analytic.chart_branch`), for every combination that has a solution.
+The cable lies in the plane of the current and has only normal drag. Its lower end is A, and its
+upper end is B. H. Braconnot's charts solve the same problems graphically.
 """
 
 from __future__ import annotations
@@ -20,17 +19,17 @@ from calm.errors import NoEquilibrium, UsageError
 
 @dataclass(frozen=True)
 class ChartSolution:
-    """One cable in a uniform current.
+    """One cable in a uniform current, from its lower end A up to its upper end B.
 
     Parameters
     ----------
-    phi_a, phi_b : angle from the current to the direction of the cable (from A to B), at the lower
-        end A and the upper end B [rad], from −π to π; negative if the cable descends
-    tension_a, tension_b : tension at the lower and upper end [N]
-    height, distance, length : height of B above A, distance of B downstream of A, and length of the
-        cable [m]
-    h0 : unit of length of the chart [m]: the tension at the apex of the curve divided by the weight
-        per metre; 0 for a straight cable, which has no apex
+    phi_a, phi_b : angle from the current to the upward direction of the cable at each end [rad],
+        from −π to π; negative if the cable descends
+    tension_a, tension_b : tension at each end [N]
+    height, distance : height of B above A, and distance of B downstream of A [m]
+    length : length of the cable [m]
+    h0 : unit of length of the chart [m]: tension at the apex of the curve divided by weight per
+        metre; 0 for a straight cable
     """
 
     phi_a: float
@@ -77,23 +76,19 @@ def chart_solve(
 ) -> ChartAnswer:
     """Find every cable that has three given quantities, or the reason why there is none.
 
-    Each cable has the given quantities with an error of at most 1e-9. The error of an angle is in
-    rad. The error of a distance is relative to the length. Other errors are relative to the given
-    value.
-
-    A cable that turns by less than a hundredth of a radian is almost straight, so its tension is
-    less accurate than the given shape (angles, height, distance, length).
+    Errors are at most 1e-9: in rad for angles, relative to the length for distances, and otherwise
+    relative to the value. The tension is less accurate for a cable that turns by less than 0.01
+    rad.
 
     Parameters
     ----------
     k : K = ρ Cx D V²/(2|w|), from 0 to 100
     weight : weight in water per metre, w [N/m]; negative for a buoyant cable
-    phi_a, phi_b : angles to the current [rad], −π to π. Only the angle at the end with the smaller
-        tension (A, or B if w < 0) can be negative.
-    tension_a, tension_b : tensions ≥ 0 [N]; only the smaller tension (at A, or at B if w < 0) may
-        be 0
+    phi_a, phi_b : angles to the current [rad], −π to π; negative only at the end with the smaller
+        tension (A, or B if w < 0)
+    tension_a, tension_b : tensions ≥ 0 [N]; 0 only at the end with the smaller tension
     height, length : height of B above A, and length of the cable, both positive [m]
-    distance : distance between A and B along the current [m]; positive if B is downstream of A
+    distance : distance of B downstream of A [m]
 
     Raises
     ------
@@ -127,7 +122,7 @@ def chart_solve(
 
 
 def _solve(k: float, known: dict[str, float], floats: bool) -> list[ChartSolution] | NoEquilibrium:
-    """Solve for sinking cables, with tensions divided by w. The caller mirrors buoyant cables."""
+    """Solve for sinking cables, with tensions divided by w."""
     refusal = contradiction(known)
     if refusal:
         return refusal
@@ -260,10 +255,10 @@ def family(what: str) -> NoEquilibrium:
 
 
 def contradiction(known: Mapping[str, float]) -> NoEquilibrium | None:
-    """Find a contradiction between the quantities of a sinking cable, or return None.
+    """Find a contradiction between the quantities of a sinking cable that does not depend on K.
 
-    Only contradictions that exist at every K are found. For a buoyant cable, the caller passes the
-    mirrored quantities. The messages suit both kinds of cable.
+    The messages also suit the mirror image of a buoyant cable. The result is None if there is no
+    contradiction.
     """
     below, above = known.get("tension_a"), known.get("tension_b")
     height, distance = known.get("height", 0.0), known.get("distance", 0.0)
@@ -300,11 +295,7 @@ def is_taut(known: Mapping[str, float]) -> bool:
 def reason(k: float, known: Mapping[str, float], floats: bool) -> NoEquilibrium:
     """Explain why no cable has the given quantities, although they do not contradict each other.
 
-    Parameters
-    ----------
-    k : K, as in `chart_solve`
-    known : the given quantities, mirrored if the cable is buoyant
-    floats : whether the cable is buoyant
+    If the cable is buoyant (`floats`), `known` has the mirrored quantities.
     """
     critical = float(critical_angle(k))
     shown = math.degrees(math.pi - critical if floats else critical)
@@ -352,11 +343,11 @@ def _none(message: str, advice: str) -> NoEquilibrium:
 
 
 def straight(k: float, known: Mapping[str, float]) -> ChartSolution | NoEquilibrium | None:
-    """Return the straight cable at the critical angle, if this cable has the given quantities.
+    """Return the straight cable at the critical angle that has the given quantities.
 
-    A straight cable does not lie on a branch of the curve. In `known`, angles are in rad and
-    tensions are divided by w. Return NoEquilibrium if the quantities do not determine the length of
-    the cable. Return None if no straight cable at the critical angle has these quantities to 1e-9.
+    In `known`, angles are in rad and tensions are divided by w. The result is None if no straight
+    cable has these quantities to 1e-9. NoEquilibrium is returned, not raised, if they do not
+    determine the length or the tension.
     """
     angle = float(critical_angle(k))
     sine, cosine = math.sin(angle), 0.0 if k == 0.0 else math.cos(angle)

@@ -1,22 +1,21 @@
 """One branch of the curve of a cable in a uniform current, in units of H₀ and wH₀.
 
-The cable lies in the plane of a uniform current and has only normal drag. With w > 0 the weight in
-water [N/m], φ the angle between cable and current, and s the arc length up the cable::
+The cable lies in the plane of a uniform current and has only normal drag. The weight in water is
+w > 0 [N/m], φ is the angle between cable and current, and s is the arc length up the cable::
 
     dT/ds = w sin φ,    T dφ/ds = w g(φ),    g(φ) = cos φ + K |sin φ| sin φ,    K = ρ Cx D V²/(2w)
 
-In units of H₀ = T(apex)/w and w H₀, all cables with the same K are pieces of one curve with its
-origin at the apex φ = 0. Beyond the critical angle φ_c, where g vanishes, lies a second branch with
-its apex at φ = 180°. The second branch is the mirror image of the first branch for −K, so `Branch`
-represents both.
+H₀ is T/w at the apex, φ = 0. In units of H₀ and wH₀, all cables with the same K are pieces of one
+curve with its origin at the apex. The curve has two branches, separated by the critical angle φ_c,
+where g = 0. The second branch has its apex at φ = 180° and is the mirror image of the first branch
+for −K.
 
-With u = cos φ and u_c = cos φ_c, dT/T = −du/g integrates to
+With u = cos φ, u_c = cos φ_c and the parameter λ, the tension is
 
-    T/(wH₀) = [(1 − u_c)(1 + u u_c)/((1 + u_c)(u − u_c))]^m,    m = (1 − u_c²)/(1 + u_c²)
+    T/(wH₀) = [(1 − u_c)(1 + u u_c)/((1 + u_c)(u − u_c))]^m = cosh^m λ,    m = (1 − u_c²)/(1 + u_c²)
 
-The bracket is set equal to cosh λ. For K = 0, λ is the parameter of the catenary. For every K, λ
-resolves the whole branch, whereas points given by φ would crowd together at φ_c. Arc length and
-distance are Gauss–Legendre quadratures of smooth functions of λ, accurate to rounding.
+λ resolves the whole branch; for K = 0 it is the parameter of the catenary. Arc length and distance
+are quadratures in λ, accurate to rounding.
 
 Source: H. Braconnot, charts for cables in a uniform current; closed form derived here.
 """
@@ -45,8 +44,7 @@ _NODES = _NODES + 0.5
 def critical_angle(k: ArrayLike) -> Floats:
     """Return the angle to the current at which a cable is straight [rad]; it is π/2 for K = 0.
 
-    K ≥ 0 is the drag per metre of a cable normal to the current, divided by the weight per metre. K
-    may be an array.
+    K ≥ 0 is the normal drag per metre divided by the weight per metre.
     """
     return np.asarray(np.arccos(-_leaning(k)), dtype=np.float64)
 
@@ -62,8 +60,8 @@ def check_k(k: float) -> float:
 class Branch:
     """One branch of the curve, rotated so that it extends downstream and its apex is at ψ = 0.
 
-    A point is given by the parameter λ, which is negative before the apex. On the first branch ψ =
-    φ. On the second branch ψ = 180° − φ, and distances are positive upstream.
+    A point is given by the parameter λ, negative before the apex. The first branch has ψ = φ. The
+    second branch has ψ = 180° − φ, and distances positive upstream.
 
     Parameters
     ----------
@@ -155,9 +153,7 @@ class Branch:
         return total[0], total[1]
 
     def _span(self, limit: float, start: Floats, end: Floats) -> Floats:
-        """Return arc length and distance, shape (2, …), between two points on one side of the apex,
-        0 ≤ start ≤ end.
-        """
+        """Return arc length and distance (2, …) between two points with 0 ≤ start ≤ end."""
         # a short piece is integrated directly, since the difference of two long ones loses digits
         short = end - start <= _PANEL
         whole = self._cumulative[limit]
@@ -176,8 +172,9 @@ class Branch:
         return total
 
     def _panel(self, limit: float, start: Floats, end: Floats) -> Floats:
-        """Return arc length and distance, shape (2, …), from `start` to `end`. These points are at
-        most one panel apart, or both are far from the apex.
+        """Return arc length and distance (2, …) between points at most one panel apart.
+
+        Points far from the apex may be farther apart.
         """
         width = end - start
         places = start + width * _NODES.reshape(-1, *([1] * start.ndim))
@@ -248,12 +245,9 @@ class CurvePoints:
 
     Parameters
     ----------
-    phi : ndarray
-        Angle of the cable to the current [rad].
-    arc, distance, height : ndarray
-        Arc length s′, distance y′ (positive downstream) and height z′ from the apex of the branch.
-    tension : ndarray
-        T/(wH₀) = 1 + z′.
+    phi : angle of the cable to the current [rad]
+    arc, distance, height : arc length, distance (positive downstream) and height from the apex
+    tension : T/(wH₀) = 1 + height
     """
 
     phi: Floats
@@ -266,11 +260,12 @@ class CurvePoints:
 def curve(k: float, phi: ArrayLike) -> CurvePoints:
     """Return the points of the curve at given angles, with errors below 1e-12 of the arc length.
 
+    Points between φ_c − π and φ_c lie on the first branch, and other points on the second.
+
     Parameters
     ----------
     k : 0 ≤ K ≤ 100
-    phi : angles to the current [rad], each from −π to π and none of them critical. Between φ_c − π
-        and φ_c a point lies on the first branch, otherwise on the second.
+    phi : angles to the current [rad], from −π to π
 
     Raises
     ------

@@ -1,20 +1,12 @@
 """Search on a branch of the curve for all cables that match the given quantities.
 
-A cable is a piece of a branch, from λ_A to λ_B, scaled by H₀. Its upper end is B, so λ_B > |λ_A|.
-If the cable dips below its lower end, λ_A is negative. The ratio of two given sizes (tensions
-divided by w, height, distance, length) does not depend on H₀. The search therefore has
+A cable is a piece of a branch, from λ_A to λ_B, scaled by H₀. The upper end is B, so λ_B > |λ_A|.
+If the cable dips below A, λ_A is negative. The ratio of two sizes (tensions divided by w, height,
+distance, length) does not depend on H₀. The number of unknowns is
 
-- no unknown if both angles, or one angle and the ratio of the tensions, are given;
-- one unknown if one angle, or the ratio of the tensions, is given;
-- two unknowns for length, distance and a third size: the ratio D/L then relates λ_B to λ_A.
-
-A residual is scanned on a grid that is fine for short pieces. The grid extends to the point beyond
-which the curve is straight within rounding. Changes of sign are refined, and minima close to zero
-are examined for a pair of roots.
-
-If length, distance and a third size are given, the mean of cos ψ over the piece must be D/L, and
-the third size must be a known fraction of the length. Powell's method starts from every pair of
-ends on a grid near which both conditions may be met.
+- 0 if both angles, or one angle and the ratio of the tensions, are given;
+- 1 if one angle, or the ratio of the tensions, is given;
+- 2 if length, distance and a third size are given.
 """
 
 from collections.abc import Callable, Mapping
@@ -41,23 +33,22 @@ _WINDOW = 2 * _AROUND + 1
 
 @dataclass(frozen=True)
 class ChartSearch:
-    """Search for the parts of a branch that have the given quantities after scaling by H₀.
+    """Search for the pieces of a branch that have the given quantities after scaling by H₀.
 
     Parameters
     ----------
-    branch : branch to search
     sizes : given values [m] by name: tension_a and tension_b (divided by w), height, length, and
-        distance, with the sign that distances have on this branch
+        distance (positive as on this branch)
     """
 
     branch: Branch
     sizes: Mapping[str, float]
 
     def pieces(self, start: float | None, end: float | None) -> list[Piece]:
-        """Find all parts of the branch that have the given quantities after scaling by H₀.
+        """Find all pieces of the branch that have the given quantities after scaling by H₀.
 
-        `start` and `end` are the values of λ at the ends, or None if unknown. If both are unknown,
-        two of the sizes must determine the ratio of the tensions.
+        `start` and `end` are the values of λ at the ends, or None if unknown. If both are None, the
+        sizes must determine the ratio of the tensions.
         """
         if end is not None and end <= 0.0:
             return []
@@ -98,9 +89,7 @@ class ChartSearch:
         return inverse_log_cosh(log_cosh(start) + ratio / self.branch.exponent)
 
     def _residual(self, path: Path, places: Floats) -> Floats:
-        """Return a residual between −1 and 1 that vanishes if two given sizes have the required
-        ratio.
-        """
+        """Return a residual from −1 to 1, which is zero if two sizes have the required ratio."""
         start, end = path(places)
         # with three sizes, the path satisfies the ratio of the tensions; one of the two sizes that
         # give this ratio is then compared with the third size
@@ -120,11 +109,10 @@ _ORDER = (*_TENSION_NAMES, "distance", "length")
 
 
 def roots(function: Callable[[Floats], Floats], grid: Floats) -> Floats:
-    """Scan a vectorised function over a grid, and find its zeros.
+    """Scan a vectorised function over a grid, and find its zeros to machine precision.
 
-    Zeros with a change of sign are computed to machine precision. Where the function approaches
-    zero without changing sign, the grid is refined repeatedly, because two zeros may lie between
-    two grid points.
+    To find pairs of zeros, the grid is refined where the function approaches zero without changing
+    sign.
     """
     value = function(grid)
     steps = steps_with_zero(value)
@@ -183,8 +171,9 @@ def size_of(branch: Branch, name: str, start: ArrayLike, end: ArrayLike) -> Floa
 
 
 def refine(function: Callable[[Floats], Floats], left: Floats, right: Floats) -> Floats:
-    """Compute zeros of a vectorised function, each between two points of opposite sign, to machine
-    precision.
+    """Compute zeros of a vectorised function to machine precision.
+
+    The sign of the function differs between `left` and `right`.
     """
     from scipy.optimize.elementwise import find_root
 
@@ -200,9 +189,7 @@ def steps_with_zero(value: Floats) -> NDArray[np.intp]:
 
 
 def dips(value: Floats) -> NDArray[np.intp]:
-    """Return the indices of the scan points at which the function may touch zero without changing
-    sign.
-    """
+    """Return the indices of scan points where the function may touch zero without changing sign."""
     size = np.abs(value)
     before, here, after = size[:-2], size[1:-1], size[2:]
     dip = (here <= before) & (here < after) & (here > _NOISE)
@@ -221,14 +208,13 @@ _LEAST_RISE = 1.0 + 1e-13
 
 @dataclass(frozen=True)
 class LengthSearch:
-    """Search for the parts of a branch with given ratios D/L and S/L, where S is a third size.
+    """Search for the pieces of a branch with given ratios D/L and S/L, where S is a third size.
 
     Parameters
     ----------
-    branch : branch to search
-    cosine : ratio D/L of distance to length; D has the sign that distances have on this branch
-    third, share : name of the third size (tension_a, tension_b or height), and the ratio of this
-        size to the length
+    cosine : ratio D/L of distance to length; D is positive as on this branch
+    third : name of the third size S (tension_a, tension_b or height)
+    share : ratio S/L
     """
 
     branch: Branch
@@ -237,7 +223,7 @@ class LengthSearch:
     share: float
 
     def pieces(self) -> list[Piece]:
-        """Find all parts of the branch that have both ratios."""
+        """Find all pieces of the branch that have both ratios."""
         if not -1.0 < self.cosine < 1.0:
             return []
         outward = graded(reach(self.branch), _POINTS_OF_ENDS)

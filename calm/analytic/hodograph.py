@@ -1,23 +1,24 @@
 """Heavy line in a uniform stream, with drag quadratic in the normal velocity: exact integrals.
 
 φ is the angle between the upward direction of the line and the upstream direction, and s the arc
-length up the line. Per metre of line, w is the weight and R the drag if it is normal to the stream.
-With p = w/R:
+length up the line. Per metre of line, w is the weight, R the drag normal to the stream, and F the
+tangential drag. With p = w/R:
 
     dT/ds = w sin φ + F,      T dφ/ds = −R D(φ),      D = sin²φ − p cos φ,      0 ≤ φ ≤ π.
 
-D vanishes at the critical angle φc, cos φc = u = √(1 + p²/4) − p/2, which no line crosses, and
-D = (u − cos φ)(cos φ + 1/u). With a = tan(φc/2) and
+No line crosses the critical angle φc with D = 0 and cos φc = u = √(1 + p²/4) − p/2. On each side of
+φc lies a branch with a parameter m. With a = tan(φc/2),
 
-    a cot(φ/2) = tanh m  (φ > φc)    or    coth m  (φ < φc),
+    a cot(φ/2) = tanh m  (φ > φc)    or    coth m  (φ < φc).
 
-each branch extends up the line from m = 0 (line horizontal) to m = ∞ (straight at φc), and
+Up the line, m grows from 0 (line horizontal) to ∞ (straight at φc). The tension is an elementary
+function of m for
 
-    ∫ (p sin φ/D) dφ,      ∫ dφ/D,      ∫ (cos²φ/D) dφ
+- F = 0;
+- F = f R (Pode's constant friction);
+- F = f R cos²φ (drag quadratic in the tangential velocity), where F changes sign at 90°.
 
-are elementary functions of m. So is the tension for F = 0, for F = f R (Pode's constant friction)
-and for F = f R cos²φ (drag quadratic in the tangential velocity), where F changes sign at 90°. Arc
-length, distance and height follow from the tension by one smooth quadrature in m.
+Arc length, distance and height need one quadrature in m.
 """
 
 from __future__ import annotations
@@ -50,8 +51,8 @@ class Hodograph:
 
     Parameters
     ----------
-    weight_ratio : ratio p = w/R > 0 of weight to normal drag per metre [-]
-    friction : ratio f ≥ 0 of the largest tangential drag to R [-]
+    weight_ratio : p = w/R > 0, ratio of weight to normal drag [-]
+    friction : f ≥ 0, ratio of the largest tangential drag to R [-]
     law : tangential drag F: "constant" for F = f R, or "square" for F = f R cos²φ
     steep : true for the branch φ > φc, false for the branch φ < φc
 
@@ -125,9 +126,7 @@ class Hodograph:
 
     @cached_property
     def _upright(self) -> float:
-        """Parameter m at φ = 90°, where the friction has a kink; 0 for the branch without this
-        angle.
-        """
+        """Parameter m at φ = 90°, where the friction has a kink; 0 if not on this branch."""
         return float(np.arctanh(self._a)) if self.steep else 0.0
 
     def log_tension(self, m: ArrayLike) -> Floats:
@@ -149,9 +148,7 @@ class Hodograph:
         return weight + self.friction * np.abs(here - upright)
 
     def _rubbing(self, m: Floats) -> Floats:
-        """Return the integral ∫ F/(f R D) dφ from φ, up to a constant. The integral increases with
-        φ.
-        """
+        """Return the integral ∫ F/(f R D) dφ up to a constant; it increases with φ."""
         u, a = self._u, self._a
         sine, cosine = self._half_angle(m)
         straight = 2.0 * m / self._sine
@@ -191,9 +188,7 @@ class Hodograph:
         return integrated(part, self._panels(start, step), floor)
 
     def _panels(self, start: float, step: float) -> list[float]:
-        """Divide a step of m at the kink of the friction, and by factors of 4 in m on both sides of
-        the kink.
-        """
+        """Divide a step of m into panels for quadrature, with one edge at the kink of friction."""
         low, high = sorted((start, start + step))
         # the line turns within the first few parts, which quadrature over a long step would miss
         edge, cuts = self._upright or self._a, []
@@ -207,7 +202,7 @@ class Hodograph:
         """Return the step of m that covers a given arc length, in units of T₀/R.
 
         The arc is positive up the line, and `start` must be finite. The result is −`start` if the
-        line becomes horizontal before the arc ends.
+        line becomes horizontal first.
         """
         from scipy.optimize import brentq
 
@@ -238,8 +233,7 @@ Floats = NDArray[np.float64]
 
 
 def integrated(part: Callable[[float], float], edges: Sequence[float], floor: float) -> float:
-    """Integrate a function over panels, to a relative error of 1e-12 or an absolute error of
-    `floor`.
+    """Integrate a function over panels, to a relative error of 1e-12.
 
     Parameters
     ----------
@@ -256,20 +250,17 @@ def integrated(part: Callable[[float], float], edges: Sequence[float], floor: fl
 
 
 class Station(NamedTuple):
-    """Points on a line in a stream, relative to the given end.
+    """Points on a line in a stream, relative to the given end of the line.
+
+    The angle is below 90° for a cable above a towed body, and above 90° (90° + tilt) for a mooring
+    line. At a body of weight W in water and drag D, the tension is √(W² + D²) and the angle
+    atan2(W, D). At a float of buoyancy B, the angle is atan2(B, −D).
 
     Attributes
     ----------
     angle : angle between the upward direction of the line and the upstream direction [rad]
     tension : tension [N]
-    x : distance upstream of the given end [m]
-    z : height above the given end [m]
-
-    All arrays have the shape of the given arcs. A cable above a towed body has angles below 90°. A
-    mooring line is inclined downstream, so its angles are above 90° (90° + tilt). The load at the
-    given end determines the tension and the angle there. A body of weight W in water and drag D
-    gives T₀ = √(W² + D²) at the angle atan2(W, D). A float of buoyancy B gives the angle
-    atan2(B, −D).
+    x, z : distance upstream of the given end, and height above this end [m]
     """
 
     angle: Floats

@@ -1,27 +1,24 @@
 """Shape of a line in a uniform horizontal stream, with a quadratic normal drag R sin²φ per metre.
 
-R is the drag per metre of a line normal to the stream, ½ρ Cn D V². The same coordinates serve towed
-cables and moorings (see `Station`). With s the arc length up the line, the equations are
+R = ½ρ Cn D V² is the drag per metre of a line normal to the stream, and F the tangential drag. With
+the arc length s up the line and coordinates as in `Station`,
 
     dT/ds = w sin φ + F,      T dφ/ds = −(R sin²φ − w cos φ),      dx/ds = cos φ,      dz/ds = sin φ
 
-with a tangential drag F. Without weight T is constant and the shape is a catenary turned by 90°.
-With weight the tension is an elementary function of φ, and the coordinates need one quadrature. If
-F = 0, the tension difference between two points is exactly w times their difference in height.
+Without weight, T is constant and the shape is a catenary turned by 90°. Without tangential drag,
+the difference in tension between two points is w times their difference in height.
+
+Pode's cable functions are for a heavy line with constant F. They refer to the point where the line
+is normal to the stream, with tension T₀. With p = w/R and f = F/R,
+
+    τ = T/T₀ = exp ∫ (f + p sin α)/(sin²α − p cos α) dα,      R s/T₀ = σ = ∫ τ dα/(sin²α − p cos α),
+
+where the integrals run from φ to 90°. For ξ and η, replace τ in the integral for σ by τ cos α and
+τ sin α. The functions satisfy τ − 1 = p η + f σ. Pode tabulates f = 0.01, 0.02 and 0.03.
 
 Sources: L. Pode, *Tables for computing the equilibrium configuration of a flexible cable in a
 uniform stream*, David Taylor Model Basin report 687, 1951; E. E. Zajac, Bell System Technical
 Journal 36, 1957, for the critical angle.
-
-Pode's cable functions describe a heavy line whose tangential drag F does not depend on the angle,
-unlike ½ρ Ct πD (V cos φ)². Relative to the point where the line is normal to the stream and has the
-tension T₀, with p = w/R and f = F/R,
-
-    τ = T/T₀ = exp ∫ (f + p sin α)/(sin²α − p cos α) dα,      R s/T₀ = σ = ∫ τ dα/(sin²α − p cos α),
-
-where all integrals run from φ to 90°. The integrals for ξ and η have τ cos α and τ sin α in the
-place of τ. The functions satisfy τ − 1 = p η + f σ. Pode's report tabulates f = 0.01, 0.02 and
-0.03.
 """
 
 from typing import NamedTuple
@@ -38,17 +35,15 @@ def neutral_line(
 ) -> Station:
     """Return the shape of a line without weight, along which the tension T is constant.
 
-    With c = cot φ, the shape is c = c₀ + R s/T, x = (T/R) (√(1 + c²) − √(1 + c₀²)) and z = (T/R)
-    (asinh c − asinh c₀).
+    With c = cot φ: c = c₀ + R s/T, x = (T/R) (√(1 + c²) − √(1 + c₀²)), z = (T/R) (asinh c − asinh
+    c₀). Arrays broadcast against each other.
 
     Parameters
     ----------
     arc : distance s along the line from the given end [m], positive up the line
     tension : T > 0 [N]
     angle : φ₀ at the given end, between 0 and π [rad]
-    normal_drag : R > 0, drag per metre of a line normal to the stream [N/m]
-
-    Arrays broadcast against each other.
+    normal_drag : R > 0 [N/m]
 
     Raises
     ------
@@ -69,14 +64,13 @@ def neutral_line(
 def critical_angle(weight_ratio: ArrayLike) -> Floats:
     """Return the angle φc [rad] at which a line is straight, from cos φc = √(1 + p²/4) − p/2.
 
-    Parameters
-    ----------
-    weight_ratio : p = w/R ≥ 0, weight divided by the drag of a line normal to the stream [-]
+    `weight_ratio` is p = w/R ≥ 0. A line lighter than water is the vertical mirror image of a heavy
+    line.
 
     Raises
     ------
     ValueError
-        p is negative. A line lighter than water is the vertical mirror image of a heavy line.
+        p is negative.
     """
     p = np.asarray(weight_ratio, float)
     if not np.all(p >= 0.0):
@@ -89,18 +83,12 @@ def critical_angle(weight_ratio: ArrayLike) -> Floats:
 
 
 def critical_weight_ratio(angle: ArrayLike) -> Floats:
-    """Return the weight ratio p = w/R = sin φc tan φc [-].
-
-    This function is the inverse of `critical_angle`.
-
-    Parameters
-    ----------
-    angle : φc, from 0 to below π/2 [rad]
+    """Return the weight ratio p = w/R = sin φc tan φc [-] for a critical angle φc [rad].
 
     Raises
     ------
     ValueError
-        An angle is outside its range.
+        φc is not from 0 to below π/2.
     """
     phi = np.asarray(angle, float)
     if not np.all((phi >= 0.0) & (phi < 0.5 * np.pi)):
@@ -114,13 +102,12 @@ def tension_ratio(
 ) -> Floats:
     """Return the ratio of a heavy line's tensions at two angles, in closed form.
 
-    Without friction and for φ₀ = 90°, the ratio is
-    [u (1 + u cos φ)/(u − cos φ)]^((1 − u²)/(1 + u²)) with u = cos φc.
+    Without friction and for φ₀ = 90°, the ratio is [u (1 + u cos φ)/(u − cos φ)]^((1 − u²)/(1 +
+    u²)) with u = cos φc.
 
     Parameters
     ----------
-    angle : φ, 0 to π, of any shape [rad]
-    start : φ₀, 0 to π, on the same side of the critical angle [rad]
+    angle, start : φ and φ₀, 0 to π, on the same side of the critical angle [rad]
     weight_ratio : p = w/R > 0 [-]
     friction : f ≥ 0, ratio of maximum tangential to maximum normal drag per metre [-]
     law : "square": tangential drag f R cos²φ; "constant": f R at any angle (Pode)
@@ -152,30 +139,23 @@ def heavy_line(
 ) -> Station:
     """Return the shape of a heavy line.
 
-    The tension is computed in closed form; arc length, distance and height are integrated
-    numerically.
+    Below a point where the line is horizontal, the line rises again, and its angle is below 0 or
+    above π. A line lighter than water is the vertical mirror image of a line of weight −w.
 
     Parameters
     ----------
-    arc : distance s along the line from the given end [m], positive up the line; array of any shape
-    tension : T₀ > 0 at the given end [N]
-    angle : φ₀ at the given end, −π to π [rad]
+    arc : distance s along the line from the given end [m], positive up the line
+    tension, angle : T₀ > 0 [N] and φ₀, −π to π [rad], at the given end
     weight : w > 0, weight per metre in the fluid [N/m]
     normal_drag : R > 0, drag per metre of a line normal to the stream [N/m]
     tangential_drag : drag per metre of a line along the stream, ≥ 0 [N/m]
-    law : dependence on the angle: "square" (cos²φ) or "constant"
+    law : dependence of the tangential drag on the angle: "square" (cos²φ) or "constant"
 
     Raises
     ------
     ValueError
-        A value is outside its range, or the tension of a straight line at the critical angle falls
-        to zero within the arc.
-
-    Notes
-    -----
-    Below a point where the line is horizontal, the line rises again, and its angle is below 0 or
-    above π. Followed in the opposite direction, this part is an ordinary line, whose angle differs
-    by π. A line lighter than water is the vertical mirror image of a line of weight −w.
+        A value is outside its range, or the tension of a straight line falls to zero within the
+        arc.
     """
     if not (0.0 < tension < np.inf and 0.0 < normal_drag < np.inf):
         raise ValueError("the tension and the normal drag of a heavy line must be above 0")
@@ -219,8 +199,9 @@ def heavy_line(
 
 
 def branch_of(start: float, weight_ratio: float, friction: float, law: Law) -> Hodograph:
-    """Return the branch of shapes that contains an angle [rad]; the critical angle belongs to the
-    steep branch.
+    """Return the branch of shapes that contains an angle [rad].
+
+    The critical angle belongs to the steep branch.
     """
     _checked(start)
     if law not in ("constant", "square"):
@@ -243,10 +224,10 @@ class CableFunctions(NamedTuple):
 
     Attributes
     ----------
-    tau : tension T/T₀ [-]
-    sigma : arc R s/T₀ [-]
-    xi : distance upstream R x/T₀ [-]
-    eta : height R z/T₀ [-]
+    tau : tension T/T₀
+    sigma : arc length R s/T₀
+    xi : distance upstream R x/T₀
+    eta : height R z/T₀
     """
 
     tau: Floats
@@ -256,16 +237,14 @@ class CableFunctions(NamedTuple):
 
 
 def cable_functions(angle: ArrayLike, weight_ratio: float, friction: float = 0.0) -> CableFunctions:
-    """Compute Pode's functions (tension, arc length, distance and height) between 90° and an angle
-    φ.
+    """Compute Pode's functions between 90° and an angle φ.
 
     Parameters
     ----------
-    angle : φ [rad], array of any shape, from above the critical angle up to π. An angle below 90°
-        belongs to a towed line with its body at 90°. An angle above 90° belongs to a moored line;
-        its arc length is counted downwards and therefore negative, and the tangential drag and the
-        term f σ change sign.
-    weight_ratio : p = w/R > 0 [-]; `critical_weight_ratio` computes p from a critical angle
+    angle : φ [rad], from above the critical angle up to π. Below 90°, the line is towed with its
+        body at 90°. Above 90°, the line is moored: arc lengths are negative, and the tangential
+        drag and the term f σ change sign
+    weight_ratio : p = w/R > 0 [-]
     friction : f = F/R ≥ 0 [-]
 
     Raises

@@ -1,21 +1,19 @@
-"""Villain-Guillot's solutions for a towed cable with drag linear or quadratic in each velocity
-component.
+"""Villain-Guillot's towed cables, with drag linear or quadratic in each velocity component.
 
-A cable of weight μg per metre in the fluid (water or air) is towed at a speed V; α is the angle of
-its upward direction above the direction of tow, and s is counted from its lower end. The drag per
-metre is k_n (V sin α)^D normal to the cable and k_t (V cos α)^D along it:
+A cable of weight μg per metre in the fluid (water or air) is towed at a speed V. The angle α of its
+upward direction is measured from the direction of tow. The arc length s is counted from the lower
+end. Drag per metre is k_n (V sin α)^D normal to the cable and k_t (V cos α)^D along it:
 
     dT/ds = P = μg sin α + k_t (V cos α)^D,      T dα/ds = δ = μg cos α − k_n (V sin α)^D.
 
-The drag parameters below are k_n V^D and k_t V^D, in N/m. δ vanishes at α_d, where the cable is
-straight; a cable without a body is straight at this angle from its free end. Otherwise, with ρ =
-T/δ the radius of curvature,
+The drag parameters of the functions are k_n V^D and k_t V^D, in N/m. At the angle α_d, where δ = 0,
+the cable is straight. Without a body, the cable is straight at this angle from its free end.
+Otherwise, with the radius of curvature ρ = T/δ,
 
     dT/T = (P/δ) dα,      dρ/ρ = (P − dδ/dα)/δ dα.
 
-For D = 1 and k_t = k_n every metre has the same drag, and the cable is a catenary about the
-direction of the sum of drag and weight. The case D = 1, k_t ≠ k_n is `unequal_cable`. D = 2 is the
-heavy line of `calm.analytic.uniform`, f = k_t/k_n.
+For D = 1 and k_t = k_n, the cable is a catenary about the direction of the sum of drag and weight.
+D = 2 is the heavy line of `calm.analytic.uniform`, with f = k_t/k_n.
 """
 
 from math import hypot, pi
@@ -37,7 +35,7 @@ def body_pull(weight: ArrayLike, lift: ArrayLike, drag: ArrayLike) -> tuple[Floa
     Parameters
     ----------
     weight : weight W in the fluid [N]
-    lift : hydrodynamic lift F_P [N], positive up, so that it is negative for a depressor
+    lift : hydrodynamic lift F_P [N], positive up
     drag : drag F_T ≥ 0 [N]
 
     Raises
@@ -54,14 +52,12 @@ def body_pull(weight: ArrayLike, lift: ArrayLike, drag: ArrayLike) -> tuple[Floa
 def straight_angle(weight: ArrayLike, normal_drag: ArrayLike, exponent: Literal[1, 2]) -> Floats:
     """Return the angle α_d at which a towed cable is straight [rad].
 
-    If the drag is proportional to the speed V (D = 1), tan α_d = μg/(k_n V).
+    For D = 1, tan α_d = μg/(k_n V). For D = 2, α_d is the critical angle of a heavy line.
 
     Parameters
     ----------
-    weight : weight per metre in the fluid, μg > 0 [N/m]
-    normal_drag : normal drag parameter, k_n V^D > 0 [N/m]
-    exponent : exponent D of the velocity in the drag; D = 2 gives the critical angle of a heavy
-        line
+    weight, normal_drag : μg > 0 and k_n V^D > 0, per metre [N/m]
+    exponent : exponent D of the velocity in the drag
 
     Raises
     ------
@@ -87,8 +83,7 @@ def linear_cable(
     Parameters
     ----------
     arc : distance s ≥ 0 along the cable from the body [m]
-    tension : T₀ ≥ 0 at the body [N]; 0 for a free end
-    angle : α₀ at the body [rad]; ignored at a free end
+    tension, angle : T₀ ≥ 0 [N] and α₀ [rad] at the body; the angle is ignored at a free end, T₀ = 0
     weight : μg > 0 [N/m]
     drag : kV > 0 [N/m]
 
@@ -124,16 +119,13 @@ def quadratic_cable(
 ) -> Station:
     """Return the shape of a towed cable for D = 2.
 
-    The tension is an elementary function; the coordinates are integrated numerically.
-
     Parameters
     ----------
-    arc : distance s ≥ 0 along the cable from the body [m]; array of any shape
-    tension : T₀ ≥ 0 at the body [N]; 0 for a free end
-    angle : α₀ at the body, −π to π [rad]; ignored at a free end
+    arc : distance s ≥ 0 along the cable from the body [m]
+    tension, angle : T₀ ≥ 0 [N] and α₀, −π to π [rad], at the body; the angle is ignored at a free
+        end, T₀ = 0
     weight : μg > 0 [N/m]
-    normal_drag : k_n V² > 0 [N/m]
-    tangential_drag : k_t V² ≥ 0 [N/m]
+    normal_drag, tangential_drag : k_n V² > 0 and k_t V² ≥ 0 [N/m]
 
     Raises
     ------
@@ -155,11 +147,9 @@ def straight_cable(
 
     Parameters
     ----------
-    arc : distance s ≥ 0 along the cable from the lower end [m]
-    tension : T₀ at the lower end [N]
-    angle : α_d, from `straight_angle` [rad]
-    weight : μg [N/m]
-    rubbing : tangential drag per metre at this angle [N/m]
+    arc, tension : distance s ≥ 0 from the lower end [m], and tension T₀ there [N]
+    angle : α_d [rad]
+    weight, rubbing : μg, and tangential drag per metre at this angle [N/m]
     """
     sine, cosine = np.sin(angle), np.cos(angle)
     pull = tension + (weight * sine + rubbing) * arc
@@ -181,15 +171,13 @@ def linear_tension_ratio(
 ) -> Floats:
     """Return the tension ratio T/T₀ = (δ₀/δ)^A e^(B (α − α₀)) of a towed cable for D = 1.
 
-    With the parameters w, n and t (weight, normal and tangential drag), A = (w² + t n)/(w² + n²)
-    and B = w (t − n)/(w² + n²). Arrays broadcast.
+    A = (w² + t n)/(w² + n²) and B = w (t − n)/(w² + n²), with the weight w and the normal and
+    tangential drag n and t. Arrays broadcast.
 
     Parameters
     ----------
     angle, start : α and α₀ [rad], on the same side of α_d and less than π away from α_d
-    weight : μg > 0 [N/m]
-    normal_drag : k_n V > 0 [N/m]
-    tangential_drag : k_t V ≥ 0 [N/m]
+    weight, normal_drag, tangential_drag : w = μg > 0, n = k_n V > 0 and t = k_t V ≥ 0 [N/m]
 
     Raises
     ------
@@ -229,15 +217,9 @@ def unequal_cable(
 ) -> Station:
     """Return the shape of a towed cable for D = 1 and k_t ≠ k_n.
 
-    The tension is an elementary function; the coordinates are integrated numerically.
-
-    The parameters and errors are as in `quadratic_cable`, but the drags contain V instead of V²,
-    and the angle must be less than π away from α_d.
-
-    Notes
-    -----
-    With |α − α_d| = 2 arctan e^(−m), where m runs from −∞ to ∞, the arc length is
-    ∫ T dm/√((μg)² + (k_n V)²).
+    Parameters and errors are as in `quadratic_cable`, but the drags contain V instead of V², and
+    the angle must be less than π away from α_d. The arc length is ∫ T dm/√((μg)² + (k_n V)²), with
+    |α − α_d| = 2 arctan e^(−m).
     """
     from scipy.optimize import brentq
 

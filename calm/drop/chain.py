@@ -1,9 +1,8 @@
 """A line as a chain of straight bars between nodes, and the loads on the bars.
 
-A cable or chain is divided into bars, a rigid piece is one bar, and all pieces rigidly connected to
-the free end form one bar. A load is a piece, the part of a piece on one bar, or a clamp. The force
-of a load is distributed to the two nodes of the bar by the lever rule. In equilibrium, a bar then
-lies along the mean of the forces at its two ends, as in the other solvers of CALM.
+A cable or chain is divided into bars. A rigid piece is one bar; all pieces rigidly connected to the
+free end share one bar. A load is a piece, the part of a piece on one bar, or a clamp. Its force is
+distributed to the two nodes of the bar by the lever rule.
 """
 
 from dataclasses import dataclass
@@ -29,22 +28,21 @@ SHORT_SHARE = 0.02
 class Elements:
     """The k loads on the bars of a chain, sorted by bar; every bar has at least one load.
 
+    All arrays are (k,) except `push`.
+
     Attributes
     ----------
-    bar : (k,) index of the bar on which the load acts
-    place : (k,) position on the bar, from 0 at its upper node to 1 at its lower node
-    piece : (k,) index of the piece to which the load belongs; -1 for a clamp
-    buoyancy, volume : (k,) net buoyancy [N] and displaced volume [m³] in reference water
-    normal_drag, tangential_drag : (k,) total Kn and Kt [N/(m/s)²]
-    directional : (k,) whether the drag depends on the direction of the flow; otherwise the drag is
-        Kn|V|V
-    flexible : (k,) whether the load belongs to a cable or chain
-    thinning, lift : (k,) as in `Line`
+    bar, piece : indices of the bar and the piece of each load; the piece of a clamp is -1
+    place : position on the bar, from 0 at its upper node to 1 at its lower node
+    buoyancy, volume : net buoyancy [N] and displaced volume [m³] in reference water
+    normal_drag, tangential_drag : total Kn and Kt [N/(m/s)²]
+    directional : whether the drag depends on the direction of the flow; if not, the drag is Kn|V|V
+    flexible : whether the load belongs to a cable or chain
+    thinning, lift : as in `Line`
     push : (3, k) force of the wind [N]
-    height : (k,) length of a rigid load, from its top to its lower end [m]
-    out : (k,) whether the load is mounted above the float, so that the load is in air if the float
-        is at the surface
-    curve : (k,) drag curves of smooth spheres and cylinders; None for other loads
+    height : length of a rigid load [m]
+    out : whether the load is mounted above the float
+    curve : drag curves of smooth spheres and cylinders; None for other loads
     """
 
     bar: Integers
@@ -95,11 +93,9 @@ class FloatOnChain:
     Attributes
     ----------
     element : index of the load that represents the float
-    height : height of the float [m]
-    weight : weight of the float in air [N]
-    draft : (m,) draft as a fraction of the height, increasing from 0 to 1
-    immersed, drag : (m,) immersed fraction of the volume, and drag as a fraction of the drag of the
-        fully immersed float
+    weight : weight in air [N]
+    draft : (m,) draft as a fraction of `height` [m], increasing from 0 to 1
+    immersed, drag : (m,) volume and drag as fractions of their values for full immersion
     push : (m, 2) wind force towards the east and north [N]
     """
 
@@ -116,20 +112,17 @@ class FloatOnChain:
 class BarChain:
     """Chain of n straight bars between n + 1 nodes, free end first.
 
+    Positions on a bar are from 0 at its upper to 1 at its lower end.
+
     Attributes
     ----------
-    line : line that the chain represents
     length : (n,) unstretched length of the bars [m]
-    piece : (n,) index of the piece that each bar represents; if several rigid pieces share a bar,
-        the index of the last of these pieces
+    piece : (n,) index of the piece that each bar represents; of several rigid pieces, the last
     compliance : (n,) strain per unit tension, 1/EA [1/N]
-    elongation : for every cable with an elongation curve, its bars and the knots of the curve
-    elements : loads on the bars
-    bars : (p, 2) index of the first bar of every piece, and index after its last bar; the two are
-        equal for a piece without length
-    span : (p, 2) position of the upper end of each piece on its first bar, and of its lower end on
-        its last bar, 0 to 1
-    clamp_bar, clamp_place : (m,) bar of each clamp, and position of the clamp on this bar, 0 to 1
+    elongation : bars, and knots of the elongation curve, of every cable with such a curve
+    bars : (p, 2) first bar of every piece, and the bar after its last bar; equal without length
+    span : (p, 2) positions of each piece's upper end on its first bar and lower end on its last bar
+    clamp_bar, clamp_place : (m,) bar of each clamp, and position on this bar
     afloat : properties of the uppermost float at the surface; None if its hull is unknown
     """
 
@@ -152,7 +145,7 @@ def chain_of(line: Line, count: int) -> BarChain:
     Parameters
     ----------
     line : line above an anchor, free end first
-    count : approximate number of bars that represent all cables and chains together
+    count : approximate number of bars for all cables and chains together
 
     Raises
     ------
@@ -219,9 +212,7 @@ def _bars(line: Line, count: int) -> tuple[Floats, Integers, Integers, Floats]:
 
 
 def _along(piece: Integers, share: Floats, bars: Integers, span: Floats) -> tuple[Integers, Floats]:
-    """Find the bars of points at given fractions of the length of their pieces, and the positions
-    of the points on the bars.
-    """
+    """Find the bars, and the positions on them, of points at given fractions of their pieces."""
     first, end = bars[piece].T
     begin, stop = span[piece].T
     fraction = begin + share * (stop - begin)

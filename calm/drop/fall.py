@@ -58,7 +58,7 @@ class Ship:
     """Ship that drops the anchor, with its velocity over the ground to the east and north [m/s].
 
     `streamed` is the horizontal distance from the anchor to the free end at the release [m]; None
-    means the distance that results under tow.
+    for the distance that results under tow.
     """
 
     east: float
@@ -79,16 +79,15 @@ def towed(
 ) -> ChainState:
     """Compute the shape of the line that streams behind the ship, with its lower end at the origin.
 
-    If `ship.streamed` is shorter than the distance that results under tow, the line has the shape
-    of a slower tow. If `ship.streamed` is longer, the free end is held at that distance.
+    If `ship.streamed` is shorter than the distance under tow, the shape is that of a slower tow. If
+    it is longer, the free end is held at that distance.
 
     Raises
     ------
     NoEquilibrium
-        ``not-converged`` if no steady shape is found; ``no-equilibrium`` if neither line nor anchor
-        has drag, so that the speed of the fall has no limit.
+        ``not-converged`` if no steady shape is found; ``no-equilibrium`` if nothing has drag.
     UsageError
-        Even behind a very slow ship, the line extends farther than the required distance.
+        The line extends farther than `ship.streamed` at any ship speed.
     """
     across = line.normal_drag[~line.directional]
     if not (anchor.drag or any(k.any() for k in (line.tangential_drag, across, line.clamp_drag))):
@@ -120,8 +119,6 @@ def fall(
     line: Line, water: Water, anchor: FallingAnchor, start: ChainState, fineness: Fineness
 ) -> Motion:
     """Compute the fall of a line from its shape under tow until its anchor reaches the seabed.
-
-    The touchdown is interpolated within the last time step.
 
     Raises
     ------
@@ -207,11 +204,7 @@ def _stepped(mover: Mover, state: ChainState, step: float, depth: float) -> Chai
 
 
 def _settled(mover: Mover, state: ChainState, step: float) -> tuple[ChainState, ...]:
-    """Return the states until the line is at rest, in ever longer time steps.
-
-    Long steps can leave a bar balanced upright on its lower end, under compression. Such bars are
-    laid down, and the line settles again.
-    """
+    """Return the states until the line is at rest."""
     depth = mover.sea.water.depth
     states = [state]
     for _ in range(_FALLS + 1):
@@ -225,6 +218,7 @@ def _settled(mover: Mover, state: ChainState, step: float) -> tuple[ChainState, 
             states.append(after)
         if moved > AT_REST * depth:
             raise Status.NOT_CONVERGED.because("The line does not settle on the seabed.")
+        # long steps can leave a bar balanced upright on its lower end, under compression
         laid = _laid_down(mover, states[-1])
         if laid is None:
             break

@@ -23,17 +23,12 @@ MOMENTS = 5
 class DepthReached:
     """Largest depth that a piece or clamp reaches while the line falls and settles.
 
-    As in all tables, the depth of a piece is the depth of its upper end. As in the design check,
-    the depth rating is compared with the depth of the deeper end.
-
     Attributes
     ----------
-    part : the piece or clamp
-    rest : depth of the upper end at rest [m]
-    greatest : largest depth of the upper end [m]
-    time : time from the release of the anchor to the largest depth [s]; None if the largest depth
-        exceeds the depth at rest by no more than `OVERSHOOT`
-    rating : depth rating of the part [m]; None if unknown
+    rest, greatest : depth of the upper end at rest, and its largest depth [m]
+    time : time from the release of the anchor to the largest depth [s]; None if the depth exceeds
+        the depth at rest by no more than `OVERSHOOT`
+    rating : depth rating [m]; None if unknown
     beyond : whether the deeper end goes below the depth rating
     """
 
@@ -63,8 +58,8 @@ class Pull:
 class ShapeInTime:
     """Shape of the line at one time, given by the nodes.
 
-    `x` is the horizontal distance of each node from the position of the anchor at the release,
-    positive towards the float [m]. `depth` is the depth of each node [m].
+    `depth` is the depth of the nodes [m]. `x` is their horizontal distance from the anchor at the
+    release, positive towards the float [m].
     """
 
     time: float
@@ -80,11 +75,10 @@ class FallPath:
     Attributes
     ----------
     time : time since the release [s]
-    anchor_depth : depth of the lower end of the anchor [m]
+    anchor_depth, float_depth : depths of the lower end of the anchor and of the free end [m]
     anchor_speed : downward speed of the anchor [m/s]
-    anchor_x, float_x : horizontal distances of the anchor and the free end from the position of
-        the anchor at the release, positive towards the float [m]
-    float_depth : depth of the free end [m]
+    anchor_x, float_x : horizontal distances of the anchor and the free end from the release,
+        positive towards the float [m]
     anchor_tension : tension of the line at the anchor [N]
     """
 
@@ -100,7 +94,8 @@ class FallPath:
 def place_of(state: ChainState, bar: Integers, place: Floats) -> Floats:
     """Return the positions (m, 3) of points on bars [m].
 
-    Each point is given by the index of its bar and its place on that bar, from 0 to 1.
+    Each point is given by its bar and its position on the bar, from 0 at the upper to 1 at the
+    lower end.
     """
     share = place[:, np.newaxis]
     found: Floats = (1.0 - share) * state.node[bar] + share * state.node[bar + 1]
@@ -117,12 +112,8 @@ def piece_ends(chain: BarChain, state: ChainState) -> tuple[Floats, Floats]:
 def end_tensions(mover: Mover, state: ChainState, *, within: bool = False) -> Floats:
     """Return the tensions (n, 2) at the upper and the lower end of every bar [N].
 
-    A bar under compression has zero tension. Just after the release, the anchor pushes the adjacent
-    pieces, which are then under compression. A real line would become slack there.
-
-    Parameters
-    ----------
-    within : whether to exclude the loads that act exactly at the ends of a bar
+    A bar under compression has zero tension. If `within` is true, loads exactly at the ends of a
+    bar are excluded.
     """
     on = mover.chain.elements
     strain, _ = mover.strain(state.tension)
@@ -133,6 +124,7 @@ def end_tensions(mover: Mover, state: ChainState, *, within: bool = False) -> Fl
     above, below = on.summed(on.share[:, np.newaxis] * force)
     pull = state.tension * axis
     ends = np.linalg.norm([pull + above, pull - below], axis=1).T
+    # just after the release, the anchor pushes the pieces above; a real line would become slack
     return np.where(state.tension[:, np.newaxis] > 0.0, ends, 0.0)
 
 
@@ -141,7 +133,7 @@ def path_of(drop: Motion, toward: Floats, anchor_height: float) -> FallPath:
 
     Parameters
     ----------
-    toward : (2,) horizontal unit vector from the anchor to the free end at the start
+    toward : (2,) horizontal unit vector from the anchor to the free end at the release
     anchor_height : height of the lower end of the line above the lower end of the anchor [m]
     """
     states = drop.states
@@ -160,7 +152,7 @@ def path_of(drop: Motion, toward: Floats, anchor_height: float) -> FallPath:
 def moments_of(drop: Motion, rest: Motion | None, toward: Floats) -> tuple[ShapeInTime, ...]:
     """Return the shapes of the line at equal intervals from release to touchdown, and at rest.
 
-    The shape at rest is omitted if `rest` is None. `toward` is as in `path_of`.
+    Without `rest`, the shape at rest is omitted. `toward` is as in `path_of`.
     """
     times = np.array([state.time for state in drop.states])
     chosen = [int(np.argmin(np.abs(times - t))) for t in np.linspace(0.0, times[-1], MOMENTS)]
@@ -197,8 +189,9 @@ def depths_of(pieces: Sequence[Piece], drop: Motion, rest: Motion) -> tuple[Dept
 
 
 def _depths(chain: BarChain, state: ChainState) -> tuple[Floats, Floats]:
-    """Return the depths [m] of the upper ends and of the deeper ends of all pieces, each followed
-    by the depths of the clamps.
+    """Return the depths [m] of the upper ends and of the deeper ends of pieces and clamps.
+
+    The pieces come first.
     """
     upper, lower = (-end[:, 2] for end in piece_ends(chain, state))
     clamps = -place_of(state, chain.clamp_bar, chain.clamp_place)[:, 2]
@@ -218,10 +211,10 @@ def pulls_of(pieces: Sequence[Piece], drop: Motion) -> tuple[Pull, ...]:
 def piece_tensions(drop: Motion) -> tuple[Floats, Floats]:
     """Return the tensions at the ends of all pieces (t-1, p, 2), and their maximum per piece [N].
 
-    The first of the t states is omitted, because the flow past the line under tow differs from the
-    flow after the release. Pieces that are rigidly connected to the free end form one bar, and all
-    have the tensions at the ends of that bar.
+    The state under tow, the first of t states, is omitted. Rigid pieces that form one bar all have
+    the tensions at the ends of that bar.
     """
+    # the flow past the line under tow differs from the flow after the release
     tension = np.array([end_tensions(drop.mover, one, within=True) for one in drop.states[1:]])
     ends = _ends_of_pieces(drop, tension)
     greatest: Floats = ends.max(axis=2)
@@ -245,8 +238,7 @@ def _ends_of_pieces(drop: Motion, tension: Floats) -> Floats:
 def rest_difference(result: LegResult, rest: Motion) -> float:
     """Return the largest distance between a piece's end at rest and its equilibrium position [m].
 
-    Pieces on the seabed are excluded. In the equilibrium they lie at the level of the seabed, but
-    in the computed rest position they lead up to the top of the anchor.
+    Pieces on the seabed are excluded.
     """
     state = rest.states[-1]
     upper, lower = piece_ends(rest.mover.chain, state)
@@ -259,6 +251,7 @@ def rest_difference(result: LegResult, rest: Motion) -> float:
     )
     found = np.concatenate([upper, lower]) - [*state.node[-1, :2], 0.0]
     away = np.linalg.norm(found - expected, axis=1)
+    # pieces on the seabed lead up to the top of the anchor at rest, but not in the equilibrium
     if result.anchor_load.grounded_length > 0.0:
         away = away[expected[:, 2] > -result.leg.water.depth + 1e-6 * result.leg.water.depth]
     return float(away.max())

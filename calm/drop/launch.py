@@ -1,7 +1,6 @@
 """Loads on the line while the anchor, deployed last, falls to the seabed.
 
-The design check uses these loads. The plan of the anchor drop (`calm.drop.plan`) computes the same
-fall from the same start, with more bars and shorter time steps, and has more detailed results.
+The resolution is half that of a drop plan (`calm.drop.plan`).
 """
 
 from dataclasses import dataclass, replace
@@ -34,25 +33,22 @@ CHECK_FINENESS = Fineness(bars=50, steps=50)
 class Launch:
     """Fall of a line behind its anchor, which is released while the ship tows the line.
 
-    The line is towed at 1 m/s against the current. Two effects are neglected: the jerk when the
-    line straightens, and the swing of the line.
+    The line is towed at 1 m/s against the current. Jerk and swing of the line are neglected.
 
     Attributes
     ----------
     fall_speed : touchdown speed of the anchor [m/s], positive down
-    fall_speed_band : two touchdown speeds [m/s], for which the last time step is repeated with
-        changed drag. The anchor drag and the tangential drag of the line are doubled for the first
-        speed, and halved for the second. NaN if the repeated step has no solution
+    fall_speed_band : touchdown speeds [m/s] for twice and for half the anchor drag and tangential
+        drag of the line in the last time step; NaN without solution
     anchor_tension : maximum load of the line on the anchor [N]
     drift : velocity of the anchor to the east and to the north at touchdown [m/s]
-    tension_top, tension_bottom : (n,) maximum tension at the ends of every piece above the anchor,
-        from release to touchdown [N]
-    anchor_drag_known : False if the anchor has no `kt`, so that the drag of a cube is assumed
-    greatest_speed, greatest_tension : largest touchdown speed [m/s], and largest tension (n,) in
-        every piece [N]. If the drag of the anchor is unknown, the last time step is repeated
-        without this drag, and its results are included
-    tangles : indices of pieces that are upside down at touchdown, wholly or in part, because the
-        line above has overtaken them
+    tension_top, tension_bottom : (n,) maximum tension at the ends of every piece above the anchor
+        [N]
+    anchor_drag_known : False if the anchor drag is assumed to be that of a cube
+    greatest_speed, greatest_tension : upper limits of the touchdown speed [m/s] and of the tension
+        (n,) in every piece [N]; if the anchor drag is unknown, with a last time step without this
+        drag
+    tangles : indices of pieces overtaken by the line above, and upside down at touchdown
     """
 
     fall_speed: float
@@ -148,8 +144,7 @@ def ship_of(leg: Leg, speed: float, course: float, streamed: float | None = None
     Parameters
     ----------
     speed, course : speed [m/s] and course [degrees] over the ground
-    streamed : horizontal distance from the anchor to the free end at the release [m]; by default
-        the distance that results under tow
+    streamed : as in `Ship` [m]
 
     Raises
     ------

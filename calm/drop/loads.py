@@ -23,8 +23,7 @@ class WaterColumn:
     Attributes
     ----------
     water : levels and properties of the water
-    skin : depth below the surface [m] within which an emerging float with an unknown hull loses its
-        buoyancy
+    skin : thickness of the surface layer [m] in which a float with unknown hull loses its buoyancy
     """
 
     water: Water
@@ -40,7 +39,10 @@ class WaterColumn:
         return values, slopes
 
     def at(self, depth: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return three arrays for k depths: current (3, k), its increase per metre, and density."""
+        """Return current (3, k), vertical gradient of the current (3, k), and density at depths.
+
+        The gradient is the increase per metre of depth.
+        """
         values, slopes = self._rows
         interval = self.water.level.searchsorted(depth, side="right")
         origin = np.maximum(interval - 1, 0)
@@ -57,12 +59,9 @@ class Loads:
     Attributes
     ----------
     force : (3, k) force [N]
-    by_flow : (3, 3, k) derivative of the force with respect to the velocity of the water past the
-        load [N/(m/s)]
-    by_axis : (3, 3, k) derivative of the force with respect to the unit axis of the bar, for
-        changes normal to the axis [N]
-    by_height : (3, k) derivative of the force with respect to height, including the effect of the
-        vertical gradient of the current [N/m]
+    by_flow : (3, 3, k) derivative by the flow past the load [N/(m/s)]
+    by_axis : (3, 3, k) derivative by the unit axis of the bar, for changes normal to the axis [N]
+    by_height : (3, k) derivative by height, with the shear of the current [N/m]
     """
 
     force: Floats
@@ -85,13 +84,10 @@ def loads_on(
 
     Parameters
     ----------
-    height : (k,) height of the loads above the surface [m]
-    velocity : (3, k) velocity of the loads over the ground [m/s]
-    axis : (3, k) unit axis of the bar of each load, pointing down the line
-    strain : (k,) strain of the bar of each load
-    variation : (k,) ratio of the drag of a smooth body at its Reynolds number to its constant drag;
-        1 for other loads
-    slowest : speed below which the drag is proportional to the speed [m/s]
+    height, velocity : (k,) height above the surface [m], and (3, k) velocity over the ground [m/s]
+    axis, strain : (3, k) unit axis, down the line, and (k,) strain of the bar of each load
+    variation : (k,) factor on the normal drag, from the Reynolds number of smooth bodies
+    slowest : speed below which drag is proportional to the speed [m/s]
     """
     on = chain.elements
     current, shear, density = sea.at(-height)
@@ -174,15 +170,12 @@ def _friction(
 def _afloat(
     chain: BarChain, sea: WaterColumn, height: Floats, density: Floats
 ) -> tuple[Floats, Floats, Floats, Floats, Floats]:
-    """Compute the effect of the surface on the loads.
-
-    Buoyant loads lose their buoyancy within the surface layer as their top emerges. A load of known
-    mass then weighs on the line. A float with a known hull loses buoyancy and drag with its draft.
+    """Compute buoyancy, drag fraction and wind force of the loads near or above the surface.
 
     Returns
     -------
-    Net force and its derivative by height, immersed share of the drag and its derivative by height,
-    and wind force.
+    Net vertical force and its derivative by height, immersed fraction of the drag and its
+    derivative by height, and wind force.
     """
     on, gravity = chain.elements, sea.water.gravity
     net = on.buoyancy + (density - REFERENCE_DENSITY) * gravity * on.volume

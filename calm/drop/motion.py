@@ -1,9 +1,8 @@
 """One time step of a chain without inertia: positions of its nodes at the end of the step.
 
-The forces on every node cancel at the end of the step, with drag for the velocity V = (X - Xₙ)/Δt
-over the step (implicit Euler), and the length of every bar follows from its tension. Positions and
-tensions are solved for together, so bars may be stiff or inextensible. The equations are solved by
-Newton's method; a node and the bar below it are one block of a block-tridiagonal matrix.
+The forces on every node cancel at the end of the step, with drag for the mean velocity
+(X - Xₙ)/Δt over the step (implicit Euler). Positions and tensions are found together by Newton's
+method, so bars may be stiff or inextensible.
 """
 
 from dataclasses import dataclass
@@ -55,10 +54,8 @@ def _overturned(before: Floats, after: Floats) -> bool:
 class FallingAnchor:
     """Properties of an anchor that falls at the end of a line.
 
-    Attributes
-    ----------
-    weight : weight in water at the seabed [N]
-    drag : coefficient K of the drag K|V|V in reference water [N/(m/s)²]; 0 if unknown
+    `weight` is the weight in water at the seabed [N]. `drag` is K of the drag K|V|V in reference
+    water [N/(m/s)²], or 0 if unknown.
     """
 
     weight: float
@@ -72,11 +69,10 @@ class ChainState:
     Attributes
     ----------
     time : time since the release [s]
-    node : (n+1, 3) positions of the nodes to the east, to the north and up [m]
+    node, velocity : (n+1, 3) positions of the nodes east, north and up [m], and their mean
+        velocities in the last time step [m/s]
     tension : (n,) tension at the midpoint of the bars [N]
-    velocity : (n+1, 3) mean velocities of the nodes in the last time step [m/s]
-    acceleration, tightening : (n+1, 3), (n,) rates of change of velocity and tension in the last
-        time step [m/s², N/s]; 0 if they are not known
+    acceleration, tightening : (n+1, 3), (n,) rates of change of velocity and tension; 0 if unknown
     lasted : length of the last time step [s]; 0 if there was none
     """
 
@@ -95,12 +91,10 @@ class Mover:
 
     Attributes
     ----------
-    chain, sea, anchor : chain of bars, water around the chain, and anchor at its lower end
-    held : whether the lower end of the chain is fixed; otherwise the lower end falls with the
-        anchor
+    sea : water around the chain
+    held : whether the lower end of the chain is fixed instead of falling with the anchor
     bedded : whether the seabed supports the line
-    tether : (2,) horizontal position at which the free end is held [m]; None if the free end can
-        move
+    tether : (2,) horizontal position at which the free end is held [m]; None if it can move
     """
 
     chain: BarChain
@@ -113,9 +107,8 @@ class Mover:
     def stepped(self, state: ChainState, step: float, gently: bool = False) -> ChainState:
         """Return the state of the chain at the end of a time step of length `step` [s].
 
-        For a line at rest, the first iterations use a drag that is proportional to the speed,
-        because Newton's method then converges more easily. With `gently`, this is also done for a
-        moving line.
+        If `gently` is true, the first iterations use drag proportional to the speed, which
+        converges more easily. A line at rest always starts like that.
 
         Raises
         ------
@@ -221,10 +214,9 @@ class Mover:
         return force, -k * (speed * _UNIT + flow[:, np.newaxis] * flow / speed)
 
     def variation(self, state: ChainState) -> Floats:
-        """Return the ratio (k,) of the drag of smooth bodies to their constant drag.
+        """Return the ratio (k,) of each load's normal drag to its constant normal drag.
 
-        The drag depends on the Reynolds number, which is computed from the motion in the last step.
-        For loads that are not smooth bodies, the ratio is 1.
+        The ratio depends on the Reynolds number for smooth bodies, and is 1 for other loads.
         """
         on = self.chain.elements
         variation = np.ones(len(on.bar))
@@ -253,7 +245,7 @@ class Mover:
         step: float,
         slowest: float,
     ) -> Floats:
-        """Compute the Newton correction (n+1, 4) of nodes and tensions; the last is unused."""
+        """Compute the Newton correction (n+1, 4) of nodes and tensions; the last one is unused."""
         chain, on = self.chain, self.chain.elements
         node = np.ascontiguousarray(node.T)
         velocity = (node - before.T) / step
@@ -328,11 +320,11 @@ def _solved(
     ----------
     residual : (4, n+1) residual forces on the nodes and residual lengths of the bars
     diagonal : (3, 3, n+1) derivative of the force on a node by its own position
-    beside : two arrays (3, 3, n): derivative of the force on a node by the position of the node
-        below, and by the position of the node above
+    beside : two arrays (3, 3, n), derivatives by the position of the node below, and of the node
+        above
     axis : (3, n) axes of the bars, downward
     slack : (n,) derivative of a bar's length by its tension, negative
-    fixed : indices of the unknowns that are fixed
+    fixed : indices of unknowns whose correction is 0
     """
     nodes, along = residual.shape[1], axis.T
     own, upper = np.zeros((nodes, 4, 4)), np.zeros((nodes - 1, 4, 4))

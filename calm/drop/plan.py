@@ -32,12 +32,11 @@ SHORT_FALL = 60.0
 
 @dataclass(frozen=True)
 class RunStart:
-    """Start of the ship's run, at which the first piece is deployed.
+    """Start of the ship's run, where the first piece is deployed.
 
     Attributes
     ----------
-    distance : distance from the start to the target along the ship's course [m]; negative if the
-        start is past the target
+    distance : distance to the target along the ship's course [m]; negative past the target
     time : time from the start to the release of the anchor [s]
     place : position of the start east and north of the target [m]
     """
@@ -51,37 +50,31 @@ class RunStart:
 class DropPlan:
     """Plan for dropping a mooring anchor last, with the line streamed behind the ship.
 
-    Lengths and depths are in m, times in s, speeds in m/s, forces in N, and directions in degrees
-    clockwise from north. Horizontal distances are positive towards the float, which is the
-    direction in which the line streams behind the anchor.
+    Units are m, s, m/s, N, and degrees clockwise from north. Speed and course are over the ground,
+    and positions are east and north of the target. The fall lasts from the release of the anchor to
+    its touchdown.
 
     Attributes
     ----------
-    ship_speed, course : speed and course of the ship over the ground
-    streamed : horizontal distance from the anchor to the free end at the release of the anchor
-    astern : direction from the anchor to the free end at the release
-    fall_time : time from the release to the touchdown of the anchor
-    fall_back : horizontal distance from the release to the touchdown, towards the float
-    aside : distance of the touchdown to the right of a line from the release towards the float
-    time_error : estimated numerical error of `fall_time`, at least 0.05 % of `fall_time`
-    distance_error : estimated numerical error of `fall_back` and `aside`; like `time_error`, it is
-        twice the sum of the changes that result from doubling the time steps and the bar lengths
-    fall_time_band, fall_back_band : smallest and largest value for anchor drags from half to twice
-        the drag used
-    touchdown_speed : speed of the anchor at touchdown
-    greatest_tension : maximum tension in the line, from release to touchdown
-    tow_past : distance past the target, along the course, at which the anchor is released
-    let_go : position at which the anchor is released, east and north of the target
-    deck_time : time to handle a piece on deck, by the role of the piece [s]; None if not specified
-    start : start of the run, at which the float is deployed; None without deck times
-    anchor_drag : coefficient K of the drag K|V|V of the anchor [N/(m/s)²]
-    drag_known : False if the file gives no anchor drag, so that the drag of a cube is assumed
-    path, moments, pulls : time series of the fall, shapes of the line, and maximum tensions in the
+    streamed, astern : horizontal distance and direction from the anchor to the free end at the
+        release
+    fall_back, aside : horizontal distances from the release to the touchdown: towards the float,
+        and to the right of this direction
+    time_error, distance_error : estimated numerical errors of `fall_time`, and of `fall_back` and
+        `aside`
+    fall_time_band, fall_back_band : smallest and largest value for half to twice the anchor drag
+    tow_past : distance of the release past the target, along the course
+    let_go : position of the release
+    deck_time : time to handle a piece on deck, by the role of the piece
+    start : start of the ship's run; None without deck times
+    anchor_drag : K of the drag K|V|V of the anchor [N/(m/s)²]
+    drag_known : False if the anchor drag is assumed to be that of a cube
+    path, moments, pulls : time series of the fall, shapes of the line, and maximum tensions in
         pieces
-    depths : largest depths of floats and of parts that hold an instrument; empty if the line
-        settles away from its equilibrium
+    depths : largest depths of floats and instruments; empty if the line settles away from its
+        equilibrium
     rest_difference : largest distance between a piece's end at rest and its equilibrium position;
-        None if the line is slack in still water and has no unique equilibrium
+        None if the equilibrium is not unique (slack line)
     """
 
     mooring: Design = field(repr=False)
@@ -113,8 +106,8 @@ class DropPlan:
     def position(self, place: tuple[float, float]) -> Position | None:
         """Return the geographic position of a point, given in m east and north of the target.
 
-        Return None if the position of the target is unknown. The conversion uses the tangent plane
-        of the WGS 84 ellipsoid, and is accurate to 1 m within 10 km of the target.
+        The result is None if the position of the target is unknown. The position is accurate to 1 m
+        within 10 km of the target (tangent plane of the WGS 84 ellipsoid).
         """
         target = self.mooring.file.position
         if target is None:
@@ -222,16 +215,14 @@ def drop_plan(
 
     Parameters
     ----------
-    ship_speed : speed of the ship over the ground [m/s]; `ship_speed`, `streamed` and `course` may
-        be texts with a unit, such as ``"2 knot"``
+    ship_speed : speed over the ground [m/s]; `ship_speed`, `streamed` and `course` may be texts
+        with a unit, such as ``"2 knot"``
     streamed : horizontal distance from the anchor to the free end at the release [m]; by default
-        the distance that results under tow
-    course : course of the ship over the ground [degrees]; by default against the current at the
-        surface, or north in still water
+        the distance under tow
+    course : course over the ground [degrees]; by default against the surface current, or north
     result : result of the mooring in the same environment, if already solved
-    fineness : resolution of the chain and of time
-    deck_time : time to handle a piece on deck, by the role of the piece [s]; if None, the start of
-        the run is not computed, because handling takes most of the time
+    deck_time : time to handle a piece on deck, by the role of the piece [s]; required for the start
+        of the run
 
     Raises
     ------
@@ -342,7 +333,7 @@ def _equilibrium(mooring: Design) -> Result | None:
 
 
 def _split(state: ChainState, toward: Floats) -> tuple[float, float]:
-    """Return the distances of the anchor towards the float and to the right of this line [m]."""
+    """Return the distances of the anchor in a direction, and to the right of this direction [m]."""
     (east, north), (x, y) = state.node[-1, :2].tolist(), toward.tolist()
     return east * x + north * y, east * y - north * x
 
@@ -352,8 +343,8 @@ def _run_start(
 ) -> RunStart:
     """Compute the start of the run, with cables paid out at the speed of the ship.
 
-    `heading` is the direction (2,) of the ship, `speed` its speed over the ground [m/s], and `past`
-    the distance past the target at which the anchor is released [m].
+    `heading` (2,) and `speed` are the ship's direction and speed over the ground [m/s]. `past` is
+    the distance of the release past the target [m].
     """
     pieces = leg.file.pieces[:-1]
     roles = [piece.component.role for piece in pieces]

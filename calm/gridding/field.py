@@ -1,18 +1,14 @@
 """Gaussian-process model of a quantity over depth and time, with scales fitted to the record.
 
-The field is a mean profile plus an anomaly, both estimated from the record. The standard deviation
-of the anomaly depends on depth. The correlation of the anomaly is a Matérn function of order 3/2
-along depth, and an exponential function in time. The uncorrelated part of the variance is due to
-scales below the sensor spacing, and to sensor noise.
+The field is a mean profile plus an anomaly. The correlation of the anomaly is a Matérn function of
+order 3/2 along depth, and an exponential function in time. A share of the variance is uncorrelated.
 
-Source: Rasmussen and Williams, Gaussian Processes for Machine Learning, 2006, eq. 4.17 and 4.18 for
-the correlation, eq. 2.25 and 2.26 for the mean and variance.
+A depth error of an instrument causes an error in its values: depth error times gradient. All
+instruments may share this error, so the standard deviation of the result includes it in full. Half
+of its variance is also independent noise of each instrument.
 
-An error in the depth of an instrument causes an error in its values, which equals the depth error
-times the local gradient. This error is added to the standard deviation of the result without
-averaging over instruments, because it may be common to all instruments for the whole record. Half
-the variance of this error also counts as independent noise of each instrument, which gives more
-weight to instruments of well-known depth.
+Source: Rasmussen and Williams, Gaussian Processes for Machine Learning, 2006, eq. 4.17 and 4.18
+(correlation), eq. 2.25 and 2.26 (mean and variance).
 """
 
 from __future__ import annotations
@@ -97,7 +93,7 @@ class LevelValues(NamedTuple):
 def field_of(samples: Samples, noise: float, *, in_time: bool = True) -> GriddedQuantity:
     """Fit a field to the samples of a quantity, with the most likely correlation scales.
 
-    The sensor noise has the standard deviation `noise`; `in_time` is as in `GriddedQuantity`.
+    `noise` is the standard deviation of sensor noise; `in_time` is as in `GriddedQuantity`.
     """
     known = np.isfinite(samples.value)
     if int(known.any(axis=0).sum()) < 2:
@@ -114,8 +110,7 @@ def field_of(samples: Samples, noise: float, *, in_time: bool = True) -> Gridded
 def profile_of(samples: Samples, noise: float) -> RecordProfile:
     """Return the mean and standard deviation of a record as functions of depth.
 
-    The mean is a local linear fit. The standard deviation is the root of a local mean of squared
-    deviations, and at least `noise`. Both use Gaussian weights as wide as the sensor spacing.
+    The mean is a local linear fit. The standard deviation is at least `noise`.
     """
     known = np.isfinite(samples.value)
     depth, value = samples.depth[known], samples.value[known]
@@ -141,9 +136,9 @@ def spacing(samples: Samples) -> float:
 
 
 def _local_line(weight: Floats, off: Floats, value: Floats, width: float) -> tuple[Floats, Floats]:
-    """Fit weighted lines over the last axis, and return their value and slope at 0.
+    """Fit weighted lines over the last axis, and return their values and slopes at 0.
 
-    The slope is zero if the depths are too close to each other.
+    The slope is 0 if the depths are too close to each other.
     """
     total = np.maximum(weight.sum(axis=-1), 1e-300)
     centre = (weight * off).sum(axis=-1) / total
@@ -221,7 +216,7 @@ def _correlation(a: Floats, b: Floats, s: Floats, t: Floats, scales: Scales) -> 
 
 
 def posterior(field: GriddedQuantity, times: NDArray[np.int64], levels: Floats) -> LevelPosterior:
-    """Compute the posterior (n, k) at depths `levels` (k,) or (n, k) [m], for n indices `times`."""
+    """Compute the posterior (n, k) at levels (k,) or (n, k) [m], for the n time indices `times`."""
     block = _block(field, times)
     level = np.broadcast_to(np.atleast_2d(levels), (len(times), np.atleast_2d(levels).shape[1]))
     spread = field.profile.deviation_at(level)
@@ -239,10 +234,10 @@ def posterior(field: GriddedQuantity, times: NDArray[np.int64], levels: Floats) 
 
 
 def estimate(field: GriddedQuantity, levels: Floats, times: NDArray[np.int64]) -> LevelValues:
-    """Estimate the values of a quantity at levels (k,) [m] for times with the indices (n,).
+    """Estimate the values of a quantity at levels (k,) [m], for the n time indices `times`.
 
-    Values between the sensors are flagged as interpolated. A value is doubtful if it is beyond the
-    sensors, or if the record constrains it poorly. If both are true, the value is missing.
+    A value is flagged as doubtful if it is beyond the sensors or poorly constrained. If both are
+    true, the value is missing.
     """
     known = np.isfinite(field.samples.value[times])
     depth = np.where(known, field.samples.depth[times], np.nan)
@@ -259,11 +254,10 @@ def estimate(field: GriddedQuantity, levels: Floats, times: NDArray[np.int64]) -
 
 
 def _likeliest(field: GriddedQuantity, times: NDArray[np.int64]) -> Scales:
-    """Find the most likely correlation scales, from the samples at some times.
+    """Find the most likely correlation scales, from the samples at the given time indices.
 
-    A weak prior determines scales that the record does not constrain. Its medians are a quarter of
-    the line, six time steps, and 2 % uncorrelated variance. Its standard deviation is a factor of
-    about five for each scale.
+    A weak prior has the medians: a quarter of the line, six time steps, and 2 % uncorrelated
+    variance. The prior standard deviation is a factor of five for each scale.
     """
     from scipy.optimize import minimize
 
@@ -295,12 +289,13 @@ def _likeliest(field: GriddedQuantity, times: NDArray[np.int64]) -> Scales:
 
 
 def left_out(field: GriddedQuantity, times: NDArray[np.int64]) -> tuple[Floats, Floats]:
-    """Predict each sensor's values at n times, given by their indices, from the other sensors.
+    """Predict each sensor's values from the other sensors, at the n time indices `times`.
 
-    The sensor's own values at this time and at the neighbouring times are withheld. The prediction
-    follows from the sensor's block in the inverse covariance matrix (Rasmussen and Williams,
-    eq. 5.12, extended to blocks). Return measured minus predicted values (n, s) and their standard
-    deviations. Both are NaN if the sensor has no value, or if no other sensor has a value.
+    Return measured minus predicted values (n, s), and their standard deviations. Both are NaN
+    without a value, or without another sensor. The sensor's own values at neighbouring times are
+    withheld.
+
+    Source: Rasmussen and Williams, eq. 5.12, extended to blocks.
     """
     block = _block(field, times)
     sensors = field.samples.value.shape[1]
@@ -324,7 +319,7 @@ MIN_RESIDUALS = 20  # minimum number of residuals from which a factor is estimat
 
 
 def _beyond(field: GriddedQuantity, times: NDArray[np.int64]) -> float:
-    """Return the factor that widens bands beyond the outermost sensors to cover 95 % of values."""
+    """Return the factor on bands beyond the outermost sensors so that they cover 95 % of values."""
     residual, spread = left_out(field, times)
     place = np.where(np.isfinite(residual), field.samples.depth[times], np.nan)
     upper, lower = (f.reduce(place, axis=1)[:, None] for f in (np.fmin, np.fmax))

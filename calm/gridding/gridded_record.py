@@ -50,8 +50,7 @@ class GriddedRecord:
 
     Attributes
     ----------
-    fields : samples and fitted field, by the name of the quantity
-    names : variable in the dataset for each quantity
+    fields, names : samples with fitted field, and variable in the dataset, for each quantity
     levels : (k,) depths of the levels [m]
     cards, notes : summary of each file that was read, and sentences on oddities in the input
     layout : layout of the gridded file
@@ -85,8 +84,8 @@ class GriddedRecord:
     def plot(self, quantity: str | None = None, ax: Any = None) -> Any:
         """Draw a section of a quantity over time and depth with matplotlib, and return the axes.
 
-        Lines show the depths of the instruments; doubtful values are pale. By default, the first
-        quantity is drawn in new axes.
+        Lines show the depths of the instruments; doubtful values are pale. The default quantity is
+        the first.
         """
         if ax is None:
             from matplotlib.figure import Figure
@@ -149,18 +148,15 @@ def grid(
 
     Parameters
     ----------
-    depths : result of `calm.estimate_motion`, its `xarray.Dataset`, or the path of a file that
-        ``calm motion`` wrote
-    values : one or several records of the instruments. A record is a path, a text ``LABEL=PATH``,
-        an `xarray.Dataset` with the contents of such a file, or a `pandas.DataFrame` of one
-        instrument, with an index of times and columns such as ``temperature[degC]``. A mapping from
-        labels to records of one instrument each is also accepted
+    depths : result of `calm.estimate_motion`, its `xarray.Dataset`, or the path of a file from
+        ``calm motion``
+    values : records of the instruments: paths, texts ``LABEL=PATH``, `xarray.Dataset` with the
+        contents of such a file, or `pandas.DataFrame` of one instrument, with an index of times and
+        columns such as ``temperature[degC]``. A mapping from labels to records is also accepted
     levels : depths of the levels [m], or a text such as ``0:20:1500``
-    step : interval over which values are averaged [s]; by default, values are averaged about the
-        times of `depths`
-    variables : names of quantities (`temperature`, `salinity`, `u` or `v`); by default, all
-        quantities in the records. If the names are in capitals, such as `TEMP`, the names in the
-        dataset are also in capitals
+    step : interval over which values are averaged [s]; by default, about the times of `depths`
+    variables : `temperature`, `salinity`, `u` or `v`; all by default. Names in capitals, such as
+        `TEMP`, give names in capitals in the dataset
     method : `depth-time`, or `depth` to treat each time separately
     flags : quality flags of the values that are used
 
@@ -201,9 +197,8 @@ def read_gridded(
 ) -> GriddedRecord:
     """Read the files of a mooring and fit the field of each quantity.
 
-    The arguments are as in `grid`, in the form in which the command reads them; `averaged` is the
-    step as text. Each note is passed to `report`, and each summary card to `show`, as soon as it is
-    known.
+    Arguments are as in `grid`, in the form of the command line. `averaged` is the step as text.
+    `report` is called with each note, and `show` with each summary card.
     """
     if method not in METHODS:
         raise UsageError(not_among("--method", method, METHODS))
@@ -275,8 +270,8 @@ def sample_notes(
 ) -> Iterator[str]:
     """Yield sentences about problems in the samples of a quantity.
 
-    Files seem to be exchanged if the pressures in a file do not agree with the depth of its
-    instrument, or if an exchange would make the mean temperatures rise or fall steadily with depth.
+    Examples are pressures that contradict the depth of an instrument, mean temperatures that
+    suggest exchanged files, and instruments without good values.
     """
     labels = places.places.label
     for i, at in points.items():

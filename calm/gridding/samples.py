@@ -101,7 +101,7 @@ def common_times(
 ) -> Times:
     """Choose the times of the field, in the period in which both depths and values are known.
 
-    The times of the depths are chosen, or equally spaced times if a step is given.
+    With a step, the times are equally spaced; otherwise, they are times of the depths.
     """
     known = [one.time[np.isfinite(one.value)] for one in series]
     known = [one for one in known if len(one)]
@@ -136,8 +136,8 @@ def gather(
 ) -> Samples:
     """Average the values, and the depths at which they were measured, around each time (n,).
 
-    Each value counts for the nearest time, if this time is within half a time step. `points` maps
-    the index of each series to its point on the line.
+    Each value counts for the nearest time, within half a time step. `points` maps the index of a
+    series to the index of its point on the line.
     """
     still = depths.places.still
     each = [(at, series[i].below) for i, at in points.items()]

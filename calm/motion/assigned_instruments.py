@@ -38,8 +38,8 @@ class AssignedInstruments:
 def assign_instruments(path: Path, list_of_instruments: Path) -> AssignedInstruments:
     """Copy serial numbers and clock errors from an instrument list to `deployed` of a mooring file.
 
-    Instruments are matched to parts of the line by name or serial number. The other instruments are
-    matched by nominal depth, in order down the line. The rest of the file is unchanged.
+    Instruments are matched to parts of the line by name or serial number, or else by nominal depth
+    in order down the line.
     """
     mooring = load(path)
     refuse_all_but_moorings(mooring.file)

@@ -1,7 +1,7 @@
 """Unknowns common to a whole record: factors on the line, the datum, and sensor offsets.
 
-The linear model in this module also serves to weigh sensor faults (slips, drifts and common steps)
-from the readings at many times.
+The datum is a depth error common to all sensors. The linear model also serves to find sensor faults
+(slips, drifts and common steps).
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ REACH = 5.0  # least distance from a sensor to the points that determine the slo
 class Common:
     """Estimate of the q unknowns common to a whole record.
 
-    The unknowns are, in order, the logarithms of the factors, the datum [m] and the offsets [m].
+    The order is: logarithms of the factors, datum [m], offsets [m].
     """
 
     factors: Mapping[str, float]  # names of the estimated factors and their values
@@ -62,9 +62,9 @@ class Common:
 def common_beforehand(
     factors: Mapping[str, float], datum: float, sensors: int, mean: float = 0.0
 ) -> Common:
-    """Return the prior of the common unknowns, in which all offsets have the mean 0.
+    """Return the prior of the common unknowns.
 
-    The prior of the datum has the mean `mean` and the standard deviation `datum` [m].
+    The datum has the mean `mean` and the standard deviation `datum` [m]; offsets have the mean 0.
     """
     known = [FACTORS[name] for name in factors]
     spread = [*known, datum, *[OFFSET] * sensors]
@@ -81,8 +81,10 @@ def fixed_slopes(common: Floats) -> Floats:
 def fall(depth: Floats, still: Floats, point: Integers) -> Floats:
     """Return the increase (n, s) in the depth of each sensor per metre of slip down the line.
 
-    The points have the depths `depth` (n, p), and `still` (p,) in still water [m]. The sensors are
-    at the points with the indices `point` (s,).
+    Parameters
+    ----------
+    depth, still : depths (n, p) of the points, and depths (p,) in still water [m]
+    point : (s,) indices of the points with sensors
     """
     result = np.zeros((len(depth), len(point)))
     for j, one in enumerate(point.tolist()):
@@ -100,7 +102,7 @@ LONGEST_MEMORY = 25  # maximum number of times over which the error correlation 
 
 
 def repeated(pull: Floats) -> float:
-    """Return the integral time scale of `pull`: the number of times that share an error."""
+    """Return the number of successive times that share an error (integral time scale of `pull`)."""
     one = pull - pull.mean()
     whole = float(one @ one)
     total, chance = 1.0, 2.0 / np.sqrt(max(len(one), 1))
@@ -158,10 +160,14 @@ RAMPS: Mapping[int, float] = {-2: 1.0, -3: 0.3}  # duration of each drift, as a 
 
 
 def moved_by(code: int, fall: Floats, share: Floats) -> Floats:
-    """Return the change (n,) in the reading of a sensor per metre of offset, slip or drift.
+    """Return the change (n,) in the reading of a sensor per metre of an offset, slip or drift.
 
-    The code is 0 for an offset, `MISHUNG` for a wrong place on the line, a key of `RAMPS` for a
-    drift, or the index of a time for a slip at that time. `fall` and `share` are as in `LinearLaw`.
+    `fall` and `share` (n,) are as in `LinearLaw`. `code` is
+
+    - 0 for an offset;
+    - `MISHUNG` for a wrong position on the line;
+    - a key of `RAMPS` for a drift;
+    - otherwise the index of the time of a slip.
     """
     if code in RAMPS:
         return np.minimum(share / RAMPS[code], 1.0)
@@ -169,19 +175,24 @@ def moved_by(code: int, fall: Floats, share: Floats) -> Floats:
 
 
 def chance_of(code: int, times: int) -> tuple[float, float]:
-    """Return the log prior probability of the fault `code`, and the deviation of its size."""
+    """Return the log prior probability of a fault, and the prior deviation of its size [m].
+
+    `code` is as in `moved_by`.
+    """
     if code in RAMPS:
         return float(np.log(DRIFTS / len(RAMPS))), DRIFT
     return float(np.log(SLIPPED / times if code > 0 else MISPLACED / 2.0)), ELSEWHERE
 
 
 def step_times(law: LinearLaw, covariance: Floats, columns: Sequence[Floats]) -> list[int]:
-    """Find the most likely start of each candidate change in the readings.
+    """Return the index of the most likely start of each candidate change in the readings.
 
-    Each change lasts to the end of the record. Each array (n, s) in `columns` is the effect of a
-    change of 1 m on the readings. Each change is fitted jointly with the common unknowns, which
-    have the prior covariance (q, q). Return the index of the time at which each change starts. The
-    index is 0 if the change covers the whole record, or if too few readings show its start.
+    A change lasts to the end of the record. The index is 0 if too few readings show the start.
+
+    Parameters
+    ----------
+    covariance : (q, q) prior covariance of the common unknowns
+    columns : (n, s) effect of each change of 1 m on the readings
     """
     inverse = np.linalg.inv(law.normal(law.fixed) + np.linalg.inv(covariance))
     left = law.raw - law.fixed @ (inverse @ law.pulls(law.fixed, law.raw).sum(axis=0))

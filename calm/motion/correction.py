@@ -191,8 +191,8 @@ BLOCK = 512  # number of times that are estimated and written together
 class Task:
     """Input of the estimate of depths, from the sensors in use.
 
-    `smoother` is the solution for the whole record, or None if no currents were measured. `faults`
-    are the diagnosed faults, or None before the diagnosis.
+    `smoother` is the solution for the whole record; None without measured currents. `faults` are
+    the diagnosed faults; None before the diagnosis.
     """
 
     mooring: Design
@@ -202,9 +202,10 @@ class Task:
     faults: tuple[Fault, ...] | None = None
 
     def columns(self, start: int, stop: int) -> tuple[Profiles, dict[str, NDArray[np.float64]]]:
-        """Estimate the line at the times from `start` to `stop`, in the most likely currents.
+        """Estimate the depths of the line, and related results, in the most likely currents.
 
-        Return the profiles, and further columns with the names of `OF_MOTION`.
+        The times are from `start` to `stop`. Return the profiles, and columns with the names of
+        `OF_MOTION`.
         """
         times, smoother = slice(start, stop), self.smoother
         one = self.measured.at(times)
@@ -258,10 +259,10 @@ class Task:
 def without_current(
     profiles: Profiles, lost: NDArray[np.bool_], false: NDArray[np.bool_] | None
 ) -> Profiles:
-    """Set the results to NaN at the times `lost` (n,), which are far from any measured current.
+    """Set the results to NaN at the times in the mask `lost` (n,), far from any measured current.
 
-    The status of such a time becomes "implausible-current" if `false` is true at this time, and
-    otherwise "no-current".
+    The status becomes "implausible-current" where the mask `false` (n,) is true, and else
+    "no-current".
     """
     status = np.where(lost, STATUSES.index("no-current"), profiles.status)
     if false is not None:

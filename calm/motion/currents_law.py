@@ -20,7 +20,7 @@ class ReadCurrents:
 
 @dataclass(frozen=True)
 class Linear:
-    """Depths of the points, linearised about a state of the currents."""
+    """Depths of the points, linearised about currents with given factors."""
 
     logs: Floats  # (n, g) the state: logarithms of the factors on the currents
     depth: Floats  # (n, p) depths at the state [m]
@@ -28,7 +28,7 @@ class Linear:
     common: Floats  # (n, p, f) derivatives with respect to the logarithms of the common factors
 
     def moved(self, logs: Floats, depth: Floats) -> Linear:
-        """Return the model at the state `logs`, at which the depths are `depth`.
+        """Return the linear model at new logarithms of the factors, with known depths.
 
         The slopes are updated by Broyden's method.
         """
@@ -42,7 +42,7 @@ class Linear:
 
 @dataclass(frozen=True)
 class SpeedLaw:
-    """Log-normal prior distribution of the current speeds at k knots."""
+    """Log-normal prior distribution of the current speeds at k depths (interpolation knots)."""
 
     mean: Floats  # (k,) mean of the logarithms of the speeds [m/s]
     covariance: Floats  # (k, k) covariance of these logarithms
@@ -51,6 +51,6 @@ class SpeedLaw:
     kept: Linear | None = None
 
     def read(self, level: Floats) -> ReadCurrents:
-        """Return currents in one direction, with the mean speeds at the levels (n, k) [m]."""
+        """Return the mean speeds as currents to the east, at the depths (n, k) [m]."""
         u = np.tile(np.exp(self.mean), (len(level), 1))
         return ReadCurrents(level, u, np.zeros_like(u))

@@ -1,10 +1,8 @@
 """Diagnosis of sensors: clocks, gains, offsets, drifts, slipped clamps.
 
-Each fault is an additional unknown, with its own prior, in the fit of the whole record. The fault
-is weighed by a Bayes factor (Kass and Raftery 1995) from the likelihood of the pressures. The
-misfit at each time follows Student's t distribution, and an error that lasts for several times
-counts once. The most likely fault is accepted, and the other faults are weighed again together with
-this fault, until no further fault is likely.
+Each fault is an additional unknown in the fit of the whole record, weighed by a Bayes factor (Kass
+and Raftery 1995). Errors follow Student's t distribution, and an error that lasts for several times
+counts once. Faults are accepted one by one, the most likely first.
 """
 
 from collections.abc import Iterator, Sequence
@@ -80,7 +78,7 @@ def diagnosed(task: Task) -> tuple[Fault, ...]:
 def law_near(task: Task) -> tuple[LinearLaw | None, list[Suspect]]:
     """Return the linear model of the readings, and possible faults of line and currents.
 
-    The model is None if there are no measurements. If currents are inferred, the list is empty.
+    The model is None without measurements, and the list is empty without measured currents.
     """
     times = chosen_times(task.measured, task.smoother is None)
     if not len(times):
@@ -103,7 +101,7 @@ def law_near(task: Task) -> tuple[LinearLaw | None, list[Suspect]]:
 
 
 class Diagnosis:
-    """Search for faults in a record, which are weighed by the likelihood of the pressures."""
+    """Search for faults in a record; each fault is weighed by the likelihood of the pressures."""
 
     def __init__(self, task: Task, law: LinearLaw, causes: Sequence[Suspect] = ()) -> None:
         self.causes = causes
@@ -130,14 +128,12 @@ class Diagnosis:
         return self._kept[steps]
 
     def _at(self, late: float) -> Floats:
-        """Return (n, s) depths read by the sensors `late` hours after each time [m].
-
-        The interpolation uses the whole slope, but a quarter of the curvature, so that it neither
-        amplifies nor smooths noise. Amplified or smoothed noise would itself favour a clock error.
-        """
+        """Return (n, s) depths read by the sensors `late` hours after each time [m]."""
         whole = round(late / self.step) if self.step > 0.0 else 0
         part = late / self.step - whole if self.step > 0.0 else 0.0
         before, there, after = (self._after(steps) for steps in (whole - 1, whole, whole + 1))
+        # a quarter of the curvature neither amplifies nor smooths noise, which would itself favour
+        # a clock error
         bent = 0.5 * part * (after - before) + 0.125 * part**2 * (after - 2.0 * there + before)
         return there + np.nan_to_num(bent)
 
@@ -197,7 +193,7 @@ class Diagnosis:
     def fitted(self, taken: list[Suspect], last: Suspect | None, alike: float) -> _Found:
         """Fit the sizes of the faults `taken` and `last`, and return the likelihood of the result.
 
-        Each error persists for `alike` successive times.
+        `alike` is the number of successive times that share an error.
         """
         whole = taken if last is None else [*taken, last]
         free = [one for one in whole if one.wide]

@@ -148,9 +148,13 @@ def write_depths(
 ) -> list[str]:
     """Write a copy of an instrument file with depths, standard deviations and flags added.
 
-    Depths come from a dataset of `calm motion`, and are interpolated over gaps of at most `gap`.
-    `inputs`, the names and hashes of the source files, are added to the history. Return the names
-    of the instruments that get no depths because they match no point of the line.
+    Return the names of the instruments without depths, because they match no point of the line.
+
+    Parameters
+    ----------
+    result : dataset of `calm motion`
+    gap : longest gap over which depths are interpolated
+    inputs : names and hashes of the source files, for the history
     """
     import xarray as xr
 
@@ -210,8 +214,8 @@ def at_own_times(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int8]]:
     """Interpolate depth, standard deviation and flag of a point to the times (n,) of an instrument.
 
-    The flag is "measured" if the pressure of the instrument itself was used, "interpolated" for
-    other estimated depths, and "missing" if there is no depth, as in gaps longer than `gap`.
+    The flag is "measured" if the pressure of the instrument was used, "interpolated" for other
+    depths, and "missing" without a depth, as in gaps longer than `gap`.
     """
     known = result["time"].values
     depth, spread = (interpolated(known, one, time, gap) for one in depths_at(result, point))
@@ -327,9 +331,8 @@ def _describe(
 ) -> None:
     """Add global attributes on depths and mooring, and a line in the history.
 
-    Attributes of the original file are kept, except for the range of depths. An attribute is added
-    only if no attribute of the original file begins with the same word, such as `creator` in
-    `creator_name`.
+    Original attributes are kept, except for the range of depths. An attribute is not added if an
+    original attribute begins with the same word, such as `creator` in `creator_name`.
     """
     name, _, mark = instruments.names
     mooring = _mooring(result)

@@ -34,7 +34,10 @@ class LineResponse:
         return (forward or self.forward).depths(read.level, read.u * factor, read.v * factor)
 
     def linear(self, read: ReadCurrents, logs: Floats) -> Linear:
-        """Return the depths and their slopes, in the currents multiplied by exp(`logs`) (n, k)."""
+        """Return the depths, and their derivatives, in the currents multiplied by exp(`logs`).
+
+        `logs` is (n, k). The derivatives are by `logs` and by the logarithms of the common factors.
+        """
         factor = np.exp(logs)
         u, v = read.u * factor, read.v * factor
         there, slopes = self.forward.slopes(read.level, u, v)
@@ -72,9 +75,9 @@ def with_factors(line: Line, factors: Mapping[str, float]) -> Line:
 class Forward:
     """A mooring with factors on its line, to be solved in many currents.
 
-    The points of the line are the clamped items, in order down the line, followed by the upper end
-    of each component, in file order. Currents u and v [m/s] at n times and k levels of given depth
-    [m] have the shape (n, k).
+    The p points of the line are the clamped items from the top down, then the upper ends of the
+    components in file order. Currents u and v [m/s] and their depths [m] are (n, k), for n times
+    and k levels.
     """
 
     def __init__(self, mooring: Design, factors: Mapping[str, float]) -> None:
@@ -99,7 +102,7 @@ class Forward:
     def slopes(self, depth: Floats, u: Floats, v: Floats) -> tuple[Floats, Floats]:
         """Return depths (n, p) of the points [m], and their derivatives (n, p, 2 k) [s].
 
-        The first k derivatives are with respect to u, the others with respect to v.
+        The derivatives are with respect to u at the k levels, followed by v.
         """
         profiles, slopes = self._batch.slopes(u, v, depth)
         return points(profiles), slopes
@@ -143,11 +146,11 @@ LOCAL = 0.3
 def own_errors(depth: Floats, still: Floats, learnt: bool) -> Floats:
     """Return the error covariance (n, p, p) of the computed depths, for a relative error of 1 [m²].
 
-    Errors are correlated over a quarter of the line. If the distribution of the currents was not
-    `learnt`, the error at a point is a share of its knockdown. A learnt distribution absorbs errors
-    of this kind. Each stretch of the line then has its own error, which is a share of the
-    contribution of the stretch to the knockdown. The error at a point is the sum over the stretches
-    below it, plus a smaller share of its knockdown. The sum varies smoothly between two sensors.
+    Errors are correlated over a quarter of the line. The error at a point is
+
+    - without `learnt` currents: a share of the knockdown of the point;
+    - with `learnt` currents, which absorb such errors: a share of the contribution of each stretch
+      of the line below the point, plus a smaller share of the knockdown of the point.
     """
     if not learnt:
         own = np.maximum(np.nan_to_num(depth - still), 0.0)

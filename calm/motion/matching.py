@@ -106,8 +106,8 @@ def currents_on_line(
 ) -> tuple[CurrentMeasurements, list[str]]:
     """Match the instruments of a current file to the line by serial number or nominal depth.
 
-    The levels of matched instruments get the label of their part and move with the line. Other
-    levels, such as the bins of a profiler, are unchanged. Also return notes on the matches.
+    The levels of matched instruments get the labels of parts of the line and move with the line.
+    Also return notes.
     """
     if any(one.label) or path.is_dir() or not cf_files.holds_arrays(path):
         return one, []
@@ -146,9 +146,14 @@ def matched_by_place(
 ) -> tuple[dict[int, int], list[str]]:
     """Match sensors to instruments by nominal depth, in order down the line.
 
-    The chosen match preserves the order and has the smallest sum of differences in depth. Return a
-    mapping from the index of each sensor to the index of its point, and notes in sentences.
-    `places` are the indices of the points that are instruments.
+    `places` are the indices of the points that are instruments. Return the index of the point for
+    each sensor index, and notes.
+
+    Raises
+    ------
+    UsageError
+        A nominal depth is missing, there are more sensors than instruments, or the match is
+        ambiguous.
     """
     lacking = [one.named for one in given if not np.isfinite(one.nominal)]
     if lacking:
@@ -171,12 +176,15 @@ CLEAR = 10.0  # a match is unique if the second-best order of instruments costs 
 
 
 def points_of(series: Sequence[Identity], line: LinePlaces) -> tuple[dict[int, int], list[str]]:
-    """Match series to points by label or serial number.
+    """Match series to points by label, serial number or nominal depth.
 
     A series without a label or a matching serial number is matched by nominal depth, in order down
-    the line. Return a mapping from the index of each matched series to the index of its point, and
-    notes on matched and unmatched series. A UsageError is raised if no series matches a point, or
-    if the order is ambiguous.
+    the line. Return the index of the point for each index of a matched series, and notes.
+
+    Raises
+    ------
+    UsageError
+        No series matches a point, or the match by nominal depth is ambiguous.
     """
     who = [(one.label, one.serial, one.nominal, one.source) for one in series]
     first = [who.index(one) for one in who]  # the bins of a profiler are one instrument
@@ -242,13 +250,19 @@ def in_order(
 ) -> tuple[dict[int, int], list[int]]:  # fmt: skip
     """Match series to points by nominal depth, in order down the line.
 
-    Each metre between the nominal depth of a series and the depth of its point costs `depths`. Each
-    metre between the nominal and the actual distance of two neighbours costs `spacings`. An error
-    that is common to all nominal depths does not change their distances. A UsageError is raised
-    unless the second-best match costs at least `clear` metres more.
+    Return the index of the point for each index of a matched series, and the indices of unmatched
+    series. Series are unmatched only if there are more series than points.
 
-    Return a mapping from the index of each matched series to the index of its point, and the
-    indices of the unmatched series, which exist if there are more series than points.
+    Parameters
+    ----------
+    depths : cost of each metre between nominal depth and depth of the point
+    spacings : cost of each metre between the nominal and the actual distance of two neighbours
+    clear : least difference in cost to the second-best match
+
+    Raises
+    ------
+    UsageError
+        The match is ambiguous.
     """
     down = sorted(points, key=lambda at: line.still[at])
     rows = sorted(range(len(series)), key=lambda i: series[i].nominal)
@@ -278,9 +292,9 @@ def aligned(
 ) -> tuple[tuple[float, list[int]], tuple[float, list[int]] | None]:
     """Find the cheapest and the second-cheapest way to match each of `few` depths to one of `many`.
 
-    Matches preserve the order of the increasing depths [m]; costs are as in `in_order`. A match is
-    returned as its cost, and the list of the indices in `many` matched to each of `few`. The second
-    match is None if only one match is possible.
+    Depths [m] increase, and matches preserve their order. Costs are as in `in_order`. A match is
+    its cost and a list of indices in `many`. The second match is None if only one match is
+    possible.
     """
     places = len(many)
 

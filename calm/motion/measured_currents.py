@@ -1,14 +1,18 @@
 """Smoother for records with measured currents, to estimate currents, line, sensors and tide.
 
-The unknowns at each time are the current at several depths (knots), the relative error in the
-knockdown of each stretch of the line, and the tide. The unknowns of the whole record are factors on
-the drag, the datum, and the offset of each sensor; steps in the datum and the offsets are rare. The
-priors are normal, except for the initial values of datum and places and for their steps. These and
-the errors of meters and sensors follow Student's t distribution, represented by weights of the
-readings and by updated variances of the unknowns. Expectation and maximisation (Dempster, Laird and
-Rubin 1977) estimate the meter error for each quality flag. Fisher scoring estimates the error share
-of each stretch. Gauss-Newton steps over the whole record use depths and derivatives from solutions
-of the line.
+The unknowns at each time are
+
+- the current at several depths (interpolation knots);
+- the relative error in the knockdown of each stretch of the line;
+- the tide.
+
+The unknowns of the whole record are drag factors, a depth error common to all sensors (the datum),
+and sensor offsets. Datum and sensor positions may change in rare steps. Most priors are normal.
+Errors of meters and sensors, and values and steps of datum and sensor positions, have Student's t
+distributions.
+
+The method is a Kalman smoother with Gauss-Newton steps over the whole record. Expectation and
+maximisation (Dempster, Laird and Rubin 1977) estimate the meter error for each quality flag.
 """
 
 from __future__ import annotations
@@ -86,7 +90,7 @@ FURTHEST = 0.7  # maximum logarithm of a factor
 
 @dataclass(frozen=True)
 class Knots:
-    """Depths (knots) at which the current is estimated, and interpolation from knots to levels."""
+    """Depths (interpolation knots) at which the current is estimated, and weights at the levels."""
 
     depth: Floats  # (K,) depths of the knots in still water, increasing [m]
     level: Floats  # (k, K) weights with which the knots contribute to the current at each level
@@ -109,11 +113,10 @@ class Knots:
 
 
 def knots_of(place: Floats, top: float, seabed: float) -> Knots:
-    """Choose the knots for levels of measured current.
+    """Choose interpolation knots for measured levels with still-water depths `place` (k,) [m].
 
-    `place` (k,) are the depths of the levels in still water [m], in any order. If there are few
-    levels, each is a knot. A knot may be added above the top of the line, and another below the
-    lowest level.
+    If there are few levels, each is a knot. One knot may be added above the top of the line, and
+    one below the lowest level.
     """
     order = np.argsort(place, kind="stable")
     chosen: list[int] = []
@@ -135,8 +138,8 @@ def knots_of(place: Floats, top: float, seabed: float) -> Knots:
 class Columns:
     """Slices of the state vector, one for each kind of unknown.
 
-    The order is: currents at the knots, errors of the stretches, tide, logarithms of the factors,
-    datum, errors in the zeros of the sensors, and errors in the places of the sensors on the line.
+    The order is: currents at the knots; errors of the stretches of the line; tide; logarithms of
+    the factors; datum; zeros of the sensors; positions of the sensors on the line.
     """
 
     current: slice
@@ -160,7 +163,7 @@ class Columns:
 
     @property
     def stays(self) -> slice:
-        """Columns of the unknowns that are constant except for steps: datum, zeros and places."""
+        """Columns of unknowns that are constant or change in steps: datum, zeros, positions."""
         return slice(self.datum.start, self.place.stop)
 
 
@@ -177,12 +180,15 @@ class ErrorScales:
 def next_shares(
     shares: Floats, alike: Floats, square: Floats, covariance: Floats, hours: float
 ) -> Floats:
-    """Return the error shares (z,) of the stretches after one step of Fisher scoring.
+    """Return the relative errors (z,) of z stretches of the line, after one step of Fisher scoring.
 
-    The errors of the stretches, relative to `shares`, have the prior correlation `alike` (z, z).
-    Over a record of length `hours`, `square` (z, z) is the mean of the products of the estimated
-    errors, and `covariance` (z, z) is the mean of their posterior covariance. The logarithms of the
-    shares have a normal prior.
+    Parameters
+    ----------
+    shares : (z,) present relative errors, as shares of the knockdown of each stretch
+    alike : (z, z) prior correlation of the errors
+    square, covariance : (z, z) record means of the products of estimated errors, and of their
+        posterior covariance, both relative to `shares`
+    hours : length of the record [h]
     """
     inverse = np.linalg.inv(alike)
     known = inverse @ (alike - covariance)
@@ -272,16 +278,19 @@ class CurrentSmoother:
         return whole[:, :count], whole[:, count:]
 
     def depths(self, state: Floats, factor: Floats, times: NDArray[np.int64] | slice) -> Floats:
-        """Return depths (n, p) of the points [m] in currents `state` (n, 2 K) relative to the mean.
+        """Return depths (n, p) of the points [m], for currents and factors.
 
-        `factor` (f,) are the logarithms of the factors; `times` selects the n times of these
-        currents.
+        Parameters
+        ----------
+        state : (n, 2 K) currents at the knots, minus their mean [m/s]
+        factor : (f,) logarithms of the factors
+        times : indices of the n times
         """
         forward = self.forward(factor)
         return forward.depths(self.knot_depth[times], *self.currents(state))
 
     def forward(self, factor: Floats) -> Forward:
-        """Return the mooring with factors of given logarithms (f,), from a small cache."""
+        """Return the mooring with line factors of given logarithms (f,), from a small cache."""
         key = tuple(factor.tolist())
         if key not in self._forwards:
             factors = dict(zip(self.names, np.exp(factor).tolist(), strict=True))
@@ -291,7 +300,7 @@ class CurrentSmoother:
         return self._forwards[key]
 
     def linear(self) -> Floats:
-        """Return depths (n, p) of the points [m], and renew the slopes of changed states."""
+        """Return depths (n, p) of the points [m], and update derivatives for changed currents."""
         now, factor = self.state[:, self.columns.current], self.factor
         far = np.abs(now - self._slopes_at).max(axis=1) > STALE
         far |= (np.abs(factor - self._slopes_factor) > FACTOR_STEP).any()
@@ -310,9 +319,10 @@ class CurrentSmoother:
     def _with_slopes(
         self, state: Floats, factor: Floats, times: NDArray[np.int64]
     ) -> tuple[Floats, Floats]:
-        """Return depths, and their derivatives (n, p, 2 K + f).
+        """Return depths (n, p), and their derivatives (n, p, 2 K + f).
 
-        The derivatives are with respect to the currents and the logarithms of the factors.
+        The derivatives are with respect to the currents at the knots, and to the logarithms of the
+        factors.
         """
         flow = self.knot_depth[times], *self.currents(state)
         there, slopes = self.forward(factor).slopes(*flow)
@@ -323,9 +333,10 @@ class CurrentSmoother:
 
     @cached_property
     def _stretches(self) -> tuple[Floats, NDArray[np.int64], Floats]:
-        """Limits of the stretches, stretch of each point, and correlation between the stretches.
+        """Limits of the stretches of the line, stretch of each point, and error correlation.
 
-        The limits are depths in still water [m], from the seabed up.
+        The limits are depths in still water [m], from the seabed up. The correlation is between the
+        errors of the stretches.
         """
         edges = np.linspace(self.still.max(), self.still.min(), STRETCHES + 1)
         own = np.clip(np.searchsorted(-edges, -self.still, "right") - 1, 0, STRETCHES - 1)
@@ -334,7 +345,10 @@ class CurrentSmoother:
         return edges, own, np.exp(-np.abs(middle[:, None] - middle) / span)
 
     def by_line(self, there: Floats) -> Floats:
-        """Return derivatives (n, p, z) of depths with respect to relative errors of z stretches."""
+        """Return derivatives (n, p, z) of depths with respect to errors of z stretches of the line.
+
+        The errors are relative to the knockdown of each stretch.
+        """
         edges, own, _ = self._stretches
         order = np.argsort(self.still, kind="stable")
         down = np.maximum(np.nan_to_num(there - self.still), 0.0)
@@ -364,9 +378,10 @@ class CurrentSmoother:
         return StateSpace(fade, steady, np.zeros_like(fade), steady, seen, flow, noise)
 
     def law(self, there: Floats) -> tuple[StateSpace, Floats]:
-        """Return the state-space model linearised at `state`, and slopes (n, p, q) of the depths.
+        """Return the linearised state-space model, and derivatives (n, p, q) of the depths.
 
-        `there` (n, p) are the depths of the points at this state [m].
+        The derivatives are with respect to the q unknowns. `there` (n, p) are the depths of the
+        points [m].
         """
         one, at, own = self.measured, self.columns, self.meter_law()
         n, flows = own.fade.shape
@@ -429,8 +444,7 @@ class CurrentSmoother:
         """Iterate until the depths converge.
 
         `slips` are likely steps in the readings: index of the sensor, index of the time, and size
-        [m]. Without `slips`, the iterations for two or three sensors may attribute the step of one
-        sensor to an offset of another.
+        [m]. They help if only two or three sensors exist.
         """
         self.stepped = self.usual.copy()
         for sensor, time, size in slips:
@@ -454,22 +468,18 @@ class CurrentSmoother:
 
     @property
     def _steps(self) -> Floats:
-        """Changes (n, s) in the readings since the start, from steps in datum and places [m]."""
+        """Changes (n, s) in the readings since the start, from steps in datum and positions [m]."""
         stay = self.state[:, self.columns.stays]
         gone = stay - stay[0]
         sensors = len(self.measured.label)
         return np.asarray(gone[:, :1] + gone[:, 1 + sensors :] * self.fall)
 
     def _place(self) -> None:
-        """Update the factors by a Gauss-Newton step, with currents estimated from the meters alone.
-
-        Currents that also fit the pressures would become too small, and the drag too large.
-        Successive times with a common error count less, and steps of datum and offsets are
-        subtracted first.
-        """
+        """Update the factors by a Gauss-Newton step, with currents from the meters alone."""
         times = chosen_times(self.measured)
         if not self.names or not len(times):
             return
+        # currents that also fit the pressures would be too small, and the drag too large
         law, *_ = self.by_meters(times)
         own = np.eye(len(self.measured.label)) * law.fall[:, :, None]
         seen = np.concatenate([law.fixed, own], axis=2)
@@ -595,7 +605,7 @@ class CurrentSmoother:
         return self.forward(self.factor)
 
     def read(self, times: slice) -> ReadCurrents:
-        """Return the estimated currents at the knots."""
+        """Return the estimated currents at the interpolation knots, for a slice of times."""
         currents = self.currents(self.state[times, self.columns.current])
         return ReadCurrents(self.knot_depth[times], *currents)
 
@@ -643,26 +653,23 @@ class CurrentSmoother:
 
     @property
     def doubt(self) -> Floats:
-        """Probability (n, k) that the meter reading at a level is unrelated to the current there.
-
-        The probability follows from the prior odds and two normal densities of the reading. The
-        first density has the variance of the meter error; the second also includes the variability
-        of the current.
-        """
+        """Probability (n, k) that a meter reading is unrelated to the current at its level."""
         one, noise = self.measured, self.meter_noise
         spread = np.square(self.knots.level @ self.spread)
         false = common_unknowns.FALSE
         odds = np.array([false.get(f, false[4]) for f in range(256)])[one.flag.astype(np.uint8)]
         wide = noise + spread
+        # two normal densities of the reading: with the meter error, or also with the variability of
+        # the current
         log = np.log(odds / (1.0 - odds)) + np.log(noise / wide)
         log += 0.5 * self.off * (1.0 / noise - 1.0 / wide)
         return np.asarray(np.nan_to_num(1.0 / (1.0 + np.exp(-np.clip(log, -50.0, 50.0)))))
 
     def by_meters(self, times: NDArray[np.int64]) -> tuple[LinearLaw, ReadCurrents, Linear]:
-        """Return a linear model of the pressures at several times, with currents from meters alone.
+        """Return a linear model of the pressures, with currents from the meters alone.
 
-        Also return these currents at the knots, and the line in these currents. The slopes of the
-        line are with respect to the logarithm of a factor on all speeds.
+        Also return these currents at the knots, and the depths of the line. The derivatives of the
+        depths are with respect to the logarithm of a factor on all speeds.
         """
         one, at, factor, law = self.measured, self.columns, self.factor, self.meter_law()
         wide = WIDER**2 * law.steady

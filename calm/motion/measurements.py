@@ -115,10 +115,9 @@ def common_times(
 ) -> Times:
     """Choose the common times of all measurements.
 
-    All times of the first current record are used, or all times of the first sensor if there are no
-    currents. Each other record adds the times that are more than half the median time step away
-    from all times chosen so far. Of several added times within a quarter of the step (a burst),
-    only the first is used.
+    They are the times of the first record (currents before sensors), and those times of other
+    records that are more than half a time step away. From bursts of such times within a quarter of
+    the step, only the first time is used.
     """
     everything: list[CurrentMeasurements | InstrumentSeries] = [*currents, *sensors]
     times = everything[0].time
@@ -173,9 +172,8 @@ def without_spikes(
 ) -> tuple[MooringMeasurements, list[str]]:
     """Remove readings far from the readings before and after, if other sensors show no change.
 
-    The deviation of a reading from the straight line between the two adjacent readings is compared
-    with the usual deviation and with a quarter of the difference between the adjacent readings. The
-    sensors `hidden` are neither tested nor used to test others. Also return notes on the removal.
+    The sensors `hidden` are neither tested nor used to test others. Also return notes on the
+    removal.
     """
     hours = (measured.time - measured.time[:1]) / np.timedelta64(1, "h")
     step = float(np.median(np.diff(hours))) if len(hours) > 1 else 0.0
@@ -204,10 +202,10 @@ def without_spikes(
 def exclude_readings(
     measured: MooringMeasurements, wrong: NDArray[np.bool_]
 ) -> tuple[MooringMeasurements, list[tuple[str, int, float, str]]]:
-    """Remove the readings that `wrong` (n, s) marks.
+    """Remove the readings that are true in the mask `wrong` (n, s).
 
-    Also return, for each sensor with such readings, the label, the number of these readings, and
-    the depth [m] and the time of the first such reading.
+    Also return a row for each affected sensor: label, number of removed readings, and depth [m] and
+    time of the first.
     """
     first = [(j, at) for j, at in enumerate(wrong.argmax(axis=0).tolist()) if wrong[at, j]]
     counts, time = wrong.sum(axis=0).tolist(), np.datetime_as_string(measured.time, "s")
@@ -229,9 +227,17 @@ def joined(
 ) -> MooringMeasurements:
     """Combine all measurements on common times, with levels and sensors from the top down.
 
-    `points` are the indices of the points of the sensors; `labels` and `still` are the labels and
-    the depths in still water [m] of all points. Values are interpolated over gaps of at most `gap`.
-    The heights [m] of `sea_level` may have any datum.
+    Parameters
+    ----------
+    points : points of the sensors
+    labels, still : labels, and depths in still water [m], of all points
+    gap : longest gap over which values are interpolated
+    sea_level : times, and heights above any datum [m]
+
+    Raises
+    ------
+    UsageError
+        A label is not on the line, or the records do not overlap.
     """
     time = common_times(currents, sensors)
     order = np.argsort([still[point] for point in points], kind="stable")
@@ -317,12 +323,14 @@ def read_currents(
     declination: float | None,
     maximum_speed: float,
 ) -> list[CurrentMeasurements]:
-    """Read the currents of several files.
+    """Read the currents of several files, given as paths, or ``LABEL=PATH`` for a single level.
 
-    Each file is given by its path. A file with a single level may be given as ``LABEL=PATH``.
-    Speeds above `maximum_speed` [m/s] are removed and noted. `seabed` is the depth of the water
-    [m], `place` the latitude and longitude of the mooring, and `declination` the magnetic
-    declination, positive to the east [degrees].
+    Parameters
+    ----------
+    seabed : depth of the water [m]
+    place : latitude and longitude of the mooring [degrees]
+    declination : magnetic declination, positive to the east [degrees]
+    maximum_speed : speed above which currents are removed, with a note [m/s]
     """
     found, terms = [], Terms(seabed, place, declination, on_the_line=True)
     for text in given:

@@ -49,7 +49,7 @@ RARE = 0.1  # a note is added if the share of times with two sensors is below th
 def shared_times(measured: MooringMeasurements, currents: bool) -> list[str]:
     """Return a note if few times have pressures from two or more sensors.
 
-    If there is no such time and no current was measured, a UsageError is raised.
+    A UsageError is raised if no time has such pressures and no current was measured.
     """
     if len(measured.label) < 2:
         return []
@@ -72,14 +72,15 @@ def shared_times(measured: MooringMeasurements, currents: bool) -> list[str]:
 
 
 def fitted(requested: Sequence[str] = (), currents: bool = True) -> tuple[str, ...]:
-    """Return the names of the factors to estimate: the defaults and the requested factors.
+    """Return the names of the factors to estimate: the default factors and the requested factors.
 
-    Without measured currents, a factor on all drag cannot be distinguished from a factor on the
-    currents; the defaults are then the drag of rigid pieces and the length.
+    The default factors multiply the drag of cables and the drag of rigid pieces. Without measured
+    currents, they multiply the drag of rigid pieces and the length of cables.
     """
     for name in requested:
         if name not in FACTORS:
             raise UsageError(unknown(f"--fit: `{name}` cannot be estimated", name, FACTORS))
+    # a factor on all drag cannot be distinguished from a factor on unmeasured currents
     usual = ("cable_drag", "rigid_drag") if currents else ("rigid_drag", "length")
     return tuple(name for name in FACTORS if name in requested or name in usual)
 
@@ -88,15 +89,13 @@ def fitted(requested: Sequence[str] = (), currents: bool = True) -> tuple[str, .
 class RecoveredMooring:
     """A recovered mooring with its records.
 
-    Creating the object reads the records and corrects known errors. `estimate` then estimates the
-    motion, and `study` compares the result with the measurements. The first attributes are the
-    parameters of `estimate_motion`, with all files as paths or ``LABEL=PATH``.
+    Creating the object reads and corrects the records. The first attributes are parameters of
+    `estimate_motion`, with files as paths or ``LABEL=PATH``.
 
     Attributes
     ----------
-    moved : step common to the depths of all sensors, sought only if no currents were measured
-    measured : the measurements
-    notes : notes on the measurements, in sentences
+    moved : step common to the depths of all sensors; only if no currents were measured
+    measured, notes : measurements, and sentences on them
     source : names and hashes of the source files
     """
 
@@ -303,22 +302,21 @@ def estimate_motion(
     Parameters
     ----------
     mooring : mooring with a position
-    pressures : pressures of the sensors on the line: one or several files, as paths or
-        ``LABEL=PATH``, an `xarray.Dataset` with the contents of such a file, or a
-        `pandas.DataFrame` with an index of times and columns such as ``LABEL[dbar]``
-    currents : records of currents, in the same forms; if empty, CALM infers the currents from the
-        pressures
-    match : how sensors are matched to the line: by `label`, or by nominal `height` or `depth`
+    pressures : records of pressure: paths, texts ``LABEL=PATH``, `xarray.Dataset` with the contents
+        of such a file, or `pandas.DataFrame` with an index of times and columns such as
+        ``LABEL[dbar]``
+    currents : records of currents in these forms; if empty, currents are estimated from pressures
+    match : key that matches sensors to the line: `label`, or nominal `height` or `depth`
     fit : factors to estimate in addition to the drag: `buoyancy`, `length`
     hold_out : labels of sensors that are withheld to test the result
-    cross_validate : whether to withhold each sensor in turn to test the result
-    sea_level : path of the sea-surface heights over time
+    cross_validate : whether to withhold each sensor in turn
+    sea_level : path of sea-surface heights over time
     flags : accepted quality flags of the pressures
     gap : longest gap over which values are interpolated [s]; two hours by default
     declination : angle added to the directions of the currents [degrees]
     correct : faults to correct: `clock`, `gain`, `offset`, `drift`, or `air` for absolute pressures
     without : labels of sensors to ignore
-    workers : number of threads; by default one for each available processor
+    workers : number of threads; by default one for each processor
 
     Raises
     ------

@@ -159,10 +159,7 @@ def no_drag(name: str, value: float) -> bool:
 
 
 def alone_remarks(common: Common) -> list[str]:
-    """Return a remark if the line is inconsistent with the pressures even in inferred currents.
-
-    The cause is unknown, because suitable currents bring most lines into agreement.
-    """
+    """Return a remark if the line is inconsistent with the pressures even in inferred currents."""
     length = common.factors.get("length", 1.0)
     far = abs(float(np.log(length))) > FAR_LENGTH * common_unknowns.FACTORS["length"]
     if not far and common.worst < WORST:
@@ -257,9 +254,13 @@ def coverage(off: Floats, deviation: Floats) -> float:
 def linear(depth: Floats, point: Integers, still: Floats, wanted: int) -> Floats:
     """Interpolate depths (n,) of a point [m] linearly between the nearest sensors.
 
-    The sensors at the points (s,) have depths (n, s); `still` are the depths (p,) of all points in
-    still water [m]. Beyond the outermost sensors, depths are extrapolated; with a single sensor,
-    all points are displaced equally.
+    Depths are extrapolated beyond the outermost sensors. A single sensor moves all points equally.
+
+    Parameters
+    ----------
+    depth, point : depths (n, s) of the sensors [m], and their points (s,)
+    still : (p,) depths of all points in still water [m]
+    wanted : index of the point
     """
     from scipy.interpolate import make_interp_spline
 
@@ -274,8 +275,7 @@ def linear(depth: Floats, point: Integers, still: Floats, wanted: int) -> Floats
 def pchip(depth: Floats, point: Integers, still: Floats, wanted: int) -> Floats:
     """Interpolate depths (n,) of a point [m] from the knockdown of the sensors, as in `linear`.
 
-    The method is PCHIP (Fritsch and Carlson 1980) over the height in still water above the lowest
-    point of the line, where the knockdown is 0.
+    The method is PCHIP (Fritsch and Carlson 1980) over height above the lowest point of the line.
     """
     from scipy.interpolate import PchipInterpolator
 

@@ -42,9 +42,14 @@ def read_sensors(
 ) -> list[InstrumentSeries]:
     """Read the depths measured by the sensors of several files [m].
 
-    Each file is given by its path. A file with a single sensor may be given as ``LABEL=PATH``.
-    Pressures with an accepted flag are converted to depths by TEOS-10 at the latitude [degrees].
-    Nominal heights are above the seabed [m].
+    Files are given as paths, or ``LABEL=PATH`` for a single sensor. Pressures are converted by
+    TEOS-10.
+
+    Parameters
+    ----------
+    flags : accepted quality flags
+    latitude : latitude of the mooring [degrees]
+    seabed : depth of the water, from which nominal heights are measured [m]
     """
     found: list[InstrumentSeries] = []
     for label, path in instrument_series.files_given(given):
@@ -210,16 +215,14 @@ def plausible(
 ) -> tuple[InstrumentSeries, list[str]]:
     """Remove implausible readings from a sensor, and return notes about the removal.
 
-    Three kinds of readings are implausible:
+    These readings are implausible:
 
-    - readings far shallower than `place`, the depth of the sensor in still water [m], which are
-      readings on deck or fill values;
+    - readings far shallower than `place`, the depth of the sensor in still water [m];
     - readings far below the seabed, whose depth is `seabed` [m];
     - readings of a stuck sensor.
 
-    Only the first of several readings at the same time is kept. Depths are corrected if the
-    readings on deck show that the pressures are absolute. If most readings are too shallow or too
-    deep, all are kept, because the sensor itself is wrong; `unusable` then reports the sensor.
+    If most readings are too shallow or too deep, all are kept. If readings on deck show that
+    pressures are absolute, they are corrected. Of several readings at one time, the first is kept.
     """
     notes = []
     again = np.zeros(len(sensor.time), bool)
@@ -291,9 +294,8 @@ NEAR_AIR, ON_DECK = 2.5, 0.6  # tolerances for the excess `AIR`: in calm water, 
 def air_notes(depth: Floats, place: Floats) -> list[str]:
     """Return a remark if all depths seem to include atmospheric pressure.
 
-    In calm water, the (n, s) measured depths then exceed the (s,) depths in still water [m] by the
-    equivalent of atmospheric pressure; currents increase this excess. The sensor with the smallest
-    excess decides.
+    `depth` (n, s) are measured depths, and `place` (s,) depths in still water [m]. The sensor with
+    the smallest excess of depth decides, because currents increase the excess.
     """
     off = np.array([_least(column) for column in depth.T]) - place
     alike = float(np.min(off[np.isfinite(off)], initial=np.inf))
@@ -317,10 +319,9 @@ EXPLAINED, BEYOND, LEAST = 0.05, 0.2, 1.0
 def metre_notes(measured: Floats, expected: Floats, latitude: float) -> list[str]:
     """Return a remark if depths in metres seem to be recorded as pressures in dbar, or the reverse.
 
-    The (s,) measured depths are then about 1 % less or more than the expected depths [m], which do
-    not depend on these readings. After conversion, the measured depths must agree with the expected
-    depths without a common offset, because a common offset and a wrong length of the line together
-    would have the same effect as another unit.
+    The measured depths (s,) are then about 1 % less or more than the expected depths (s,) [m],
+    which must not depend on these readings. After conversion, the depths must agree without a
+    common offset.
     """
     off = measured - expected
     if len(off) < 2 or not rms(off) > LEAST:
@@ -329,6 +330,8 @@ def metre_notes(measured: Floats, expected: Floats, latitude: float) -> list[str
         (pressure_at(measured, latitude), "low", "depths in metres recorded as dbar"),
         (depth_of(measured, latitude), "high", "pressures in dbar recorded as depths in metres"),
     ):
+        # no common offset is allowed, because an offset and a wrong length of the line together
+        # would have the same effect as another unit
         left = rms(true - expected)
         if left <= min(EXPLAINED * rms(off), BEYOND * float(off.std())):
             share = 100.0 * float(np.abs(measured / true - 1.0).mean())
@@ -340,11 +343,15 @@ def metre_notes(measured: Floats, expected: Floats, latitude: float) -> list[str
 
 
 def unusable(labels: Sequence[str], depth: Floats, place: Floats) -> dict[str, str]:
-    """Return the labels of unusable sensors, each with the reason.
+    """Return the reason for each label of an unusable sensor.
 
-    The sensors have (n, s) measured depths, and (s,) depths in still water [m]. A UsageError is
-    raised if two labels are exchanged, or if half or more of the sensors are far from their places
-    on the line, because a unit or the line is then wrong.
+    `depth` (n, s) are measured depths, and `place` (s,) depths in still water [m].
+
+    Raises
+    ------
+    UsageError
+        Two labels are exchanged, or at least half of the sensors are far from their places on the
+        line.
     """
     reasons: dict[str, str] = {}
     far_off: dict[str, str] = {}

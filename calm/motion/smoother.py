@@ -1,10 +1,10 @@
 """Kalman filter and fixed-interval smoother, with one forward and one backward pass.
 
-The model is x(t+1) = f x(t) + e for the state, with diagonal f, and y = H x + noise for the
-readings, with independent errors. The backward recursion is from Durbin and Koopman (2012, Time
-Series Analysis by State Space Methods, section 4.4) and needs no inverse of a state covariance. To
-save memory, the forward pass stores the filter only at the start of each block of times; the
-backward pass repeats the filter within each block.
+The model of the states x and the readings y is x(t+1) = f x(t) + e, with diagonal f, and
+y = H x + noise. All errors are independent.
+
+Source of the backward recursion: Durbin and Koopman, Time Series Analysis by State Space Methods,
+2012, section 4.4.
 """
 
 from __future__ import annotations
@@ -92,6 +92,7 @@ def smoothed(law: StateSpace) -> Iterator[Smoothed]:
     """Yield the smoothed states block by block, from the last block of times to the first."""
     count = len(law.read)
     starts = range(0, count, BLOCK)
+    # to save memory, store the filter only at the start of each block
     begun = [(np.zeros(len(law.first)), law.first)]
     for start in starts[:-1]:
         for one in _filter(law, start, start + BLOCK, *begun[-1]):

@@ -64,16 +64,15 @@ class MotionEstimate:
     Attributes
     ----------
     task : input of the estimate, with the common unknowns of the record
-    dataset : the result of `calm motion`
-    factors : value and 95 % interval of each factor of the whole record, by name
-    sensors : agreement of each sensor in use with the estimate, by label
-    plain : agreement of each sensor in use with depths computed from the currents alone, by label
-    held_out : errors of the estimated depths of each withheld sensor
-    diagnosis : faults of sensors, line and currents, with sizes and odds
+    dataset : result of `calm motion`
+    factors : value and 95 % interval of each factor on the line
+    sensors, plain : agreement of each sensor in use with the estimated depths, and with depths from
+        the measured currents alone
+    held_out : errors of the estimated depths at each withheld sensor
+    diagnosis : faults of sensors, line and currents
     fits : whether the line is consistent with the pressures
-    remarks : doubts about the data, in sentences
+    remarks, notes : sentences on doubts about the data, and on the input
     false : times at which the current at a level is probably false, by name of the level
-    notes : notes on the input, in sentences
     """
 
     task: Task
@@ -147,8 +146,8 @@ def prepare(
 ) -> Task:
     """Estimate the common unknowns of the record, without the withheld sensors.
 
-    The measurements include the withheld sensors, `hidden`; `names` are the factors to estimate.
-    Progress messages are passed to `tell`.
+    `measured` includes the sensors `hidden`, and `names` are the factors to estimate. `tell`
+    receives progress messages.
     """
     used = without(measured, hidden)
     if not used.label:
@@ -229,7 +228,7 @@ def judged(
 
 
 def knockdown(used: MooringMeasurements) -> Floats:
-    """Return the depth (n,) of the highest sensor with a pressure, minus its least depth [m]."""
+    """Return the knockdown (n,) of the highest sensor with a pressure, from its least depth [m]."""
     down = np.full(len(used.time), np.nan)
     for j in range(len(used.label)):
         depth = used.depth[:, j]
@@ -248,8 +247,8 @@ def judge_hidden(
 ) -> HeldOut:
     """Compare the depths of a withheld sensor with the estimate and with two interpolations.
 
-    The sensor has an estimated depth (n,), and its standard deviation [m]; `still` are the depths
-    of all points in still water [m].
+    `depth` (n,) and `spread` (n,) are the estimated depth and its standard deviation [m]. `still`
+    (p,) are the depths of all points in still water [m].
     """
     column = measured.label.index(label)
     own = measured.depth[:, column]

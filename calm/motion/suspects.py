@@ -1,9 +1,8 @@
 """Suspects: possible faults of a record, with their effects on the depths.
 
-Faults of the line and its currents are: currents that read too low or too high, missing floats,
-wrong cable lengths, wrong drag, and drag that increases by fouling. Some of these have nearly the
-same effect on the depths; their odds then show that the record cannot distinguish them. The module
-also finds readings that differ in depth by more than the length of line between the two sensors.
+Faults of the line and its currents are: meters that read too low or too high, missing floats, wrong
+cable lengths, wrong drag, and fouling. The module also finds readings that contradict the length of
+line between two sensors.
 """
 
 from __future__ import annotations
@@ -46,9 +45,12 @@ class Suspect:
 def line_suspects(task: Task, read: ReadCurrents, at: Linear, share: Floats) -> Iterator[Suspect]:
     """Yield possible faults of the line and its measured currents.
 
-    `at` holds solutions of the line in the currents `read` at several times, with derivatives with
-    respect to the logarithm of a factor that multiplies all speeds. `share` is the elapsed share of
-    the record at the times with an equilibrium.
+    Parameters
+    ----------
+    read : currents at several times
+    at : depths of the line in these currents, with derivatives with respect to the logarithm of a
+        factor on all speeds
+    share : elapsed share of the record at the times with an equilibrium
     """
     factors = task.common.factors
     good = np.isfinite(at.depth).all(axis=1)
@@ -81,12 +83,10 @@ TURNED, UNLIKE = 10.0, 5.0  # rotation [degrees] and speed ratio above which a m
 def meter_remarks(measured: MooringMeasurements, names: Sequence[str]) -> list[str]:
     """Return a remark on each current meter with rotated or mirrored readings, or a wrong unit.
 
-    A meter is reported if it disagrees with its two nearest meters, and these two agree with each
-    other. Agreement is measured by the complex correlation r of the currents over the whole record.
-    The phase of r is the mean angle between the two currents (Kundu 1976, J. Phys. Oceanogr. 6,
-    238-242). For n independent times, the standard deviation of the phase is
-    sqrt((1 - r²) / (2 r² n)). A correlation with the mirrored current indicates that the east and
-    north components are exchanged.
+    A meter is reported if it disagrees with its two nearest meters, while those two agree. The
+    measure is the complex correlation r of the currents, whose phase is the mean angle between them
+    (Kundu 1976, J. Phys. Oceanogr. 6, 238-242). For n independent times, the standard deviation of
+    the phase is sqrt((1 - r²) / (2 r² n)).
     """
     flow = np.where(measured.flag <= GOOD, measured.u + 1j * measured.v, np.nan)
 
@@ -157,10 +157,12 @@ def torn(
 ) -> tuple[MooringMeasurements, list[str]]:
     """Remove readings that differ in depth by more than the length of line between the sensors.
 
-    Of two such readings, the one that is farther from the median of its sensor is removed. If half
-    or more of the readings of a sensor would be removed, all are kept. Distances (p,) of the points
-    are from the top, along the line [m]. The sensors `hidden` are neither tested nor used to test
-    others. Also return notes on the removal.
+    Of two such readings, the one farther from the median of its sensor is removed. A sensor that
+    would lose half of its readings keeps all. Sensors in `hidden` are ignored. Also return notes.
+
+    Parameters
+    ----------
+    distance : (p,) distance of the points from the top, along the line [m]
     """
     depth, place = measured.depth, distance[measured.point]
     used = [i for i, label in enumerate(measured.label) if label not in hidden]
@@ -189,9 +191,8 @@ LEAST_STEP = 3.0  # least size of a step [m]
 def common_step(measured: MooringMeasurements, still: Floats) -> Fault | None:
     """Find a step common to the depths of all sensors; return None if there is no such step.
 
-    Such a step means that the whole mooring has moved to another depth. A current lowers the lowest
-    sensor less than the highest, whereas a sinking mooring lowers all equally. The search is for
-    records without measured currents, because inferred currents would otherwise explain the step.
+    Such a step means that the whole mooring has moved to another depth. It is sought only in
+    records without measured currents.
     """
     whole = np.flatnonzero(np.isfinite(measured.depth).all(axis=1))
     order = np.argsort(still[measured.point], kind="stable")
@@ -206,6 +207,7 @@ def common_step(measured: MooringMeasurements, still: Floats) -> Fault | None:
     at = int(np.abs(change[:, -1]).argmax())
     size = float(change[at, -1])
     lasting = np.median(depth[at + EITHER_SIDE :, -1]) - np.median(depth[: at + EITHER_SIDE, -1])
+    # a current would lower the lowest sensor less than the highest
     alike = np.abs(change[at] - size) <= 3.0 * usual
     if abs(size) < max(CLEAR * usual[-1], LEAST_STEP) or not alike.all():
         return None

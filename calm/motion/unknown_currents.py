@@ -1,16 +1,12 @@
 """Estimation of unmeasured currents from the pressures of a record.
 
-The unknowns at each time are the speeds at a few depths (knots). All knots share one direction,
-which has no effect on the depths. The logarithms of the speeds have a normal distribution, whose
-mean and covariance are learnt from the record by expectation and maximisation (Dempster, Laird and
-Rubin 1977). Each time is fitted by Gauss-Newton steps under the present distribution. The
-distribution is then updated to the mean and covariance of the fits, including their uncertainty. If
-the pressures do not constrain the distribution, the prior is kept. The line itself also has an
-error that varies smoothly along its length. This error is a share of the knockdown, estimated from
-the pressures as an average over several trial values.
+The unknowns at each time are the speeds at a few depths (interpolation knots). The direction has no
+effect on the depths, and is the same at all knots. The logarithms of the speeds have a normal
+distribution, learnt from the record by expectation and maximisation (Dempster, Laird and Rubin
+1977). Each time is fitted by Gauss-Newton steps under this distribution.
 
-The fits of the times used for learning are stored. At every other time, the estimate starts from
-the stored fit with the nearest depths.
+The line itself has an error that varies smoothly along its length, and is a share of the knockdown.
+The share is estimated from the pressures.
 """
 
 from collections.abc import Callable, Sequence
@@ -81,10 +77,10 @@ class CurrentsState:
 def posterior(
     one: MooringMeasurements, at: Linear, spread: Floats, common: Common, still: Floats
 ) -> Posterior:
-    """Return the posterior of currents and depths, linearised at a state of the currents.
+    """Return the posterior of currents and depths, from a linear model of the line.
 
-    The factors on the currents have the prior covariance `spread` (g, g) of their logarithms;
-    `still` are the depths (p,) in still water [m].
+    `spread` (g, g) is the prior covariance of the logarithms of g factors on the currents. `still`
+    (p,) are the depths in still water [m].
     """
     n, p, g = at.slope.shape
     s, f = len(one.point), at.common.shape[2]
@@ -132,13 +128,10 @@ def posterior(
 
 
 def with_knots(measured: MooringMeasurements, mooring: Design) -> MooringMeasurements:
-    """Return the measurements with their levels replaced by knots of unknown current.
-
-    Pressures contain no information on the current above the line. The uppermost knot is therefore
-    at the depth of the top of the line in strong currents, from the readings of the uppermost
-    sensor.
-    """
+    """Return the measurements with interpolation knots of unknown current as levels."""
     still, seabed = Forward(mooring, {}).still, float(mooring.water.depth)
+    # the uppermost knot is at the top of the line in strong currents, because pressures contain no
+    # information on the current above
     sensor = int(np.argmin(still[measured.point]))
     depth = measured.depth[:, sensor] - measured.moved
     down = float(np.nanquantile(depth, DOWN)) - still[measured.point[sensor]]
@@ -156,7 +149,7 @@ def with_knots(measured: MooringMeasurements, mooring: Design) -> MooringMeasure
 
 
 def assumed_law(measured: MooringMeasurements) -> tuple[Floats, Floats]:
-    """Return prior mean (k,) and covariance (k, k) of the log speeds at the knots [m/s]."""
+    """Return prior mean (k,) and covariance (k, k) of the logarithms of speed [m/s] at k knots."""
     knots = measured.level_depth[0]
     mean = np.log(SURFACE * np.exp(-(knots - knots[0]) / DECAY) + LEAST)
     place = np.linspace(0.0, 1.0, len(knots))
@@ -172,9 +165,13 @@ def learn_currents(
 ) -> Common:
     """Estimate the distribution of the current speeds jointly with the common unknowns.
 
-    The measurements have the knots as levels; `names` are the factors to estimate. Progress
-    messages are passed to `tell`. A UsageError is raised if no equilibrium of the line fits the
-    pressures.
+    The levels of `measured` are interpolation knots, `names` are the factors to estimate, and
+    `tell` receives progress messages.
+
+    Raises
+    ------
+    UsageError
+        No equilibrium of the line fits the pressures.
     """
     part = measured.at(_chosen(measured))
     mean, covariance = assumed_law(part)
@@ -229,11 +226,10 @@ def learn_currents(
 
 
 def raised(mooring: Design, measured: MooringMeasurements) -> float:
-    """Return the depth error [m] of the sensor that is farthest above its still-water depth.
+    """Return the depth error [m] of the sensor farthest above its still-water depth; negative or 0.
 
-    Currents only lower a line, so this error means that the water depth, a length or the position
-    in the file is wrong. The error is negative, or 0 if no sensor is far above its still-water
-    depth.
+    Since currents only lower a line, this is an error of water depth, length or position in the
+    file.
     """
     depth = measured.depth - measured.moved[:, None]
     known = np.isfinite(depth).any(axis=0)
@@ -244,7 +240,7 @@ def raised(mooring: Design, measured: MooringMeasurements) -> float:
 
 @dataclass(frozen=True)
 class _Fit:
-    """Posterior of the learning times under one distribution of the speeds."""
+    """Posterior of the times used for learning, for one distribution of the speeds."""
 
     moments: LineResponse
     common: Common
@@ -262,7 +258,7 @@ class _Fit:
         return posterior(one, at, self.law.covariance, common or self.common, still)
 
     def misfit(self, at: Linear) -> Floats:
-        """Return (n,) twice the negative log-posterior of a state."""
+        """Return (n,) twice the negative logarithm of the posterior density at `at.logs`."""
         one, point = self.moments.measured, self.moments.measured.point
         found = self.posterior(at)
         seen = at.slope[:, point]
@@ -301,7 +297,7 @@ def _chosen(measured: MooringMeasurements) -> Integers:
 
 
 def _worst(fit: _Fit, at: Linear, common: Common, used: Integers) -> Common:
-    """Estimate the relative error of the line: RMS of the trial values, weighted by likelihood."""
+    """Estimate the relative error of the line: RMS of trial values, weighted by likelihood."""
     now, log = fit.posterior(at), []
     white = np.linalg.solve(np.linalg.cholesky(now.expected), now.innovation[:, :, None])
     alike = max(repeated(column) for column in white[:, :, 0].T)

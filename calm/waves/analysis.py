@@ -50,9 +50,10 @@ SMALL = 0.05
 class WaveAccuracy:
     """Estimated relative errors of the standard deviations of tension and of the float's pitch.
 
-    `mesh` is the relative change if the number of elements is doubled, and `frequencies` the
-    relative change if the number of frequencies is doubled. `linearisation` is the relative change
-    if the linearised drag is reduced by a fifth, which shows how much the results depend on drag.
+    Attributes
+    ----------
+    mesh, frequencies : change if the number of elements or of frequencies is doubled
+    linearisation : change if the linearised drag is reduced by a fifth
     """
 
     mesh: float
@@ -66,11 +67,8 @@ class WaveAnalysis:
 
     Attributes
     ----------
-    name : name of the mooring
-    states : results for each sea state, in the given order
     accuracy : estimated errors in the highest and in the shortest sea
-    fatigue : fatigue of each piece; each sea state counts for its share of time, and a single sea
-        state is assumed to last all year
+    fatigue : fatigue of each piece, from the shares of time of the sea states
     warnings : warnings about assumptions
     pitch_unknown : reason why the pitch of the float is not computed; None if it is computed
     """
@@ -122,8 +120,7 @@ class _Setting:
     def cut_offs(self, sea: SeaState, response: WaveResponse, flow: Floats) -> CutOffs:
         """Compute the responses for half and for twice the cut-off frequency of a response.
 
-        All responses use the drag linearised for the given response. Frequencies above the cut-off
-        have the same relative spacing as those below.
+        All three responses use the same linearised drag.
         """
         last = float(response.omega[-1])
         count = int(np.ceil(np.log(2.0) / np.log(last / float(response.omega[-2])))) + 1
@@ -141,10 +138,10 @@ class _Setting:
     def deviations(
         self, seas: Sequence[SeaState], first: Sequence[Floats | None], **how: Any
     ) -> tuple[tuple[Floats, Floats], list[Floats]]:
-        """Compute the standard deviations of tension [N], and of the pitch of the float.
+        """Compute the standard deviations of tension and of pitch in several sea states.
 
-        The results are arrays (seas, pieces) and (seas, 1). Tensions are 0 on the seabed, and the
-        pitch is 0 if unknown. Also return the flow past the nodes in each sea.
+        Return the arrays (seas, pieces) [N] and (seas, 1) [rad], and the flow past the nodes in
+        each sea. Tensions on the seabed and unknown pitches are 0.
         """
         found = [self.respond(sea, flow, **how) for sea, flow in zip(seas, first, strict=True)]
         tensions = np.array([_by_piece(self.line, response) for response, _ in found])
@@ -161,25 +158,21 @@ def analyse(
 ) -> WaveAnalysis:
     """Compute tensions and motions of a mooring in sea states.
 
-    The line is represented by lumped masses that move about the equilibrium in the mean current.
-    Waves are linear and long-crested. Drag is replaced by a linear drag that dissipates the same
-    energy. Elements and frequencies are refined until the standard deviations of tension in the
-    highest and in the shortest sea converge to 1 %.
+    Waves are linear and long-crested, and drag is linearised about the mean current. Standard
+    deviations of tension and pitch converge to 1 % in the highest and in the shortest sea.
 
     Parameters
     ----------
-    seas : one or more sea states
     toward : direction in which the waves travel [degrees], clockwise from north
-    duration : duration for which the maximum and minimum tension are computed [s]
-    watched : function that wraps the iteration over the sea states, for instance to show progress
+    duration : duration for which maximum and minimum tension are computed [s]
+    watched : wrapper around the iteration over the sea states, for instance to show progress
 
     Raises
     ------
     NoEquilibrium
         The mooring has no equilibrium.
     UsageError
-        The float at the surface has no hull or no mass, or a sea state is too high for the water
-        depth, so that its waves break.
+        Hull or mass of the float is unknown, or the waves of a sea state break in this depth.
     """
     for sea in seas:
         if sea.significant_height > SHALLOWEST * leg.water.depth:
@@ -232,7 +225,7 @@ def _settled(
 ) -> tuple[_Setting, Floats, WaveAccuracy]:
     """Refine elements and frequencies until they suffice for all given sea states.
 
-    Return the refined setting, the flow past the nodes in the first sea, and the remaining error.
+    Return the setting, the flow past the nodes in the first sea, and the remaining error.
     """
     density = leg.water.density_at(np.array(0.0))
     water = Waves(np.zeros(0), toward, leg.water.depth, float(density), leg.water.gravity)

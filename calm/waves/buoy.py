@@ -59,26 +59,22 @@ PRESCRIBED_STIFFNESS = 1e10
 class Buoy:
     """Properties of a float at the surface that determine its motion in waves.
 
+    Heights are relative to the surface.
+
     Attributes
     ----------
-    mass : mass of the float and of the pieces on it [kg]
-    displaced : mass of the displaced water [kg]
-    radius : radius of the waterplane [m]
-    draft : draft of the float [m]
+    mass, displaced : mass of the float with the pieces on it, and of the displaced water [kg]
+    radius, draft : radius of the waterplane, and draft of the float [m]
     drag, heave_drag : K of the drag K|V|V in horizontal flow, and in heave [N/(m/s)²]
-    rao : rows of a prescribed response. Each row has an angular frequency [rad/s], and the
-        amplitude [-] and phase [degrees] of heave relative to the wave elevation; the amplitude
-        [degrees/m] and phase [degrees] of pitch may follow
+    rao : rows of the prescribed response: angular frequency [rad/s], amplitude [-] and phase
+        [degrees] of heave relative to the wave elevation; optionally amplitude [degrees/m] and
+        phase of pitch
     follows : whether heave and pitch follow the motion of the water surface
-    panels : (12, f) results of a panel method. Row 0 is the angular frequency ω [rad/s]. Rows 1 to
-        8 are four pairs of added mass and radiation damping: for heave, for surge, for the coupling
-        of surge with pitch, and for pitch about the surface. Rows 9 to 11 are the exciting forces
-        per metre of elevation in heave, surge and pitch; the forces in surge and pitch are divided
-        by ω². None means that formulas are used instead
-    profile : (s, 2) radius of each horizontal section of the hull, and height of the section above
-        the surface [m], from the keel up; None if the pitch is not computed
-    centre : height of the centre of mass above the surface, for the float with all pieces on it [m]
-    bail : height of the attachment point of the line above the surface [m]
+    panels : (12, f) result of `panel_response`; None if formulas are used instead
+    profile : (s, 2) radii and heights of horizontal sections of the hull [m], from the keel up;
+        None if pitch is not computed
+    centre : height of the centre of mass, with the pieces on the float [m]
+    bail : height of the attachment point of the line [m]
     gyration : radius of gyration about a horizontal axis through the centre of mass [m]
     """
 
@@ -108,14 +104,12 @@ class Buoy:
     def heave(
         self, omega: Floats, number: Floats, density: float, gravity: float
     ) -> tuple[Complexes, Complexes]:
-        """Return the dynamic stiffness and the exciting force in heave [N/m].
+        """Return the dynamic stiffness and the exciting force in heave, complex arrays (f,) [N/m].
 
-        The exciting force is per metre of wave elevation. Without a prescribed response or a panel
-        method, the float is represented by a disc with radius R at the draft T. The Froude-Krylov
-        force is ρgA e^(-kT) 2 J1(kR)/(kR). The added mass is `DISC_ADDED` ρR³. The added mass times
-        the mean acceleration of the water over the disc is part of the exciting force. The
-        radiation damping follows from Haskind's relation, k ω |X|² / (2 ρ g²) in deep water (Newman
-        1977, 6.18).
+        The force is per metre of wave elevation. Unless prescribed or from a panel method, the
+        results are for a disc of radius R, area A and draft T. The added mass is `DISC_ADDED` ρR³,
+        and the Froude-Krylov force ρgA e^(-kT) 2 J1(kR)/(kR). The radiation damping in deep water
+        is k ω |X|² / (2 ρ g²) for the exciting force X (Haskind's relation, Newman 1977, 6.18).
 
         Parameters
         ----------
@@ -148,20 +142,13 @@ class Buoy:
     ) -> tuple[Complexes, Complexes]:
         """Return the dynamic stiffness and the exciting forces in surge and pitch.
 
-        The exciting forces are per metre of wave elevation. All results refer to the point where
-        the axis of the float meets the surface. Pitch is positive if the part above the surface
-        moves forward.
-
-        Parameters
-        ----------
-        profile : as in `Buoy`
-        omega, number, density, gravity : as in `heave`
+        The reference point is on the axis of the float, at the surface. Pitch is positive if the
+        part above the surface moves forward.
 
         Returns
         -------
-        The stiffness (3, f) in surge [N/m], for the coupling of surge with pitch [N], and in pitch
-        [N m]; and, as an array (2, f), the exciting force in surge [N/m] and the exciting moment in
-        pitch [N].
+        stiffness : (3, f) surge [N/m], coupling of surge with pitch [N], pitch [N m]
+        exciting : (2, f) force in surge [N/m] and moment in pitch [N], per metre of wave elevation
         """
         if self.panels is None:
             added, radiated, pushing = self._of_sections(profile, omega, number, density, gravity)
@@ -180,9 +167,9 @@ class Buoy:
         return held, pushing
 
     def _given(self, omega: Floats, column: int) -> Complexes:
-        """Interpolate a response in `rao`.
+        """Interpolate the prescribed response at the frequencies `omega`.
 
-        The amplitudes are in `column`, and the phases in the next column.
+        `column` of `rao` has the amplitudes, and the next column the phases.
         """
         at, amplitude, phase = np.array(self.rao).T[[0, column, column + 1]]
         turned = np.interp(omega, at, np.unwrap(np.radians(phase)))
@@ -191,9 +178,8 @@ class Buoy:
     def righting(self, profile: Floats, density: float, gravity: float) -> float:
         """Return the righting moment of the float per radian of pitch [N m].
 
-        The righting moment is the sum of four moments: of the waterplane, of the buoyancy, of the
-        weight, and of the pull of the line at the bail. For a free float, the righting moment is
-        the weight times the metacentric height.
+        The moment includes the pull of the line at the bail. For a free float, the moment is the
+        weight times the metacentric height.
         """
         radius, height = profile.T
         buoyancy = float(np.trapezoid(radius**2 * height) / np.trapezoid(radius**2))
@@ -207,11 +193,9 @@ class Buoy:
     ) -> tuple[Floats, Floats, Complexes]:
         """Compute added mass (3, f), damping (3, f) and exciting forces (2, f), as in `pitch`.
 
-        All results are integrated over the sections of the hull. Exciting forces include the wave
-        pressure on the hull and the inertia of the water, with the local acceleration. The added
-        mass of the sections is reduced by `END_LOSS`, and the added mass of the bottom follows from
-        `DISC_TURNED`. Radiation follows from Haskind's relation, k ω Xi Xj / (4 ρ g²) in deep water
-        (Newman 1977, 6.18).
+        Sources: `END_LOSS` for the added mass of the sections, `DISC_TURNED` for the added moment
+        of inertia of the bottom, and Haskind's relation for the damping, k ω Xi Xj / (4 ρ g²) in
+        deep water (Newman 1977, 6.18).
         """
         radius, height = profile.T
         area = pi * radius**2
@@ -248,9 +232,8 @@ class Buoy:
 def bessel(order: int, x: Floats) -> Floats:
     """Evaluate the Bessel function of the first kind Jn(x), for an integer order n ≥ 0.
 
-    For |x| below 4, the power series is used (Abramowitz and Stegun 9.1.10), which is accurate at
-    small x. Otherwise the function is the mean of cos(nθ − x sin θ) at equal steps around a circle
-    (9.1.21), which is exact to rounding if there are many more steps than |x| + n.
+    Sources: Abramowitz and Stegun 9.1.10 (power series) for |x| < 4, and 9.1.21 (mean of
+    cos(nθ − x sin θ) around a circle) for larger |x|.
     """
     small = np.minimum(np.abs(x), 4.0) * np.sign(x)
     term = (0.5 * small) ** order / factorial(order)
@@ -269,15 +252,13 @@ def bessel(order: int, x: Floats) -> Floats:
 def buoy_of(leg: Leg, solution: Solution, follows: bool) -> Buoy | None:
     """Return the float at the surface, or None if the line is below the surface.
 
-    Parameters
-    ----------
-    follows : whether heave and pitch follow the water surface, whatever the hull
+    If `follows` is true, heave and pitch follow the water surface, whatever the hull.
 
     Raises
     ------
     UsageError
-        The hull or the mass of the float is unknown, the component at the surface is not a float,
-        or the float would capsize.
+        Hull or mass of the float is unknown, the component at the surface is not a float, or the
+        float would capsize.
     """
     if not solution.afloat:
         return None
@@ -358,13 +339,15 @@ def _round_hull(hull: Hull | None, draft: float) -> tuple[float, Floats | None]:
 
 
 def panel_response(profile: Floats, density: float, gravity: float) -> Complexes:
-    """Compute `Buoy.panels` for an axisymmetric hull in deep water with Capytaine.
+    """Compute added mass, damping and wave forces of an axisymmetric hull with Capytaine.
 
-    Parameters
-    ----------
-    profile : (n, 2) radius of each horizontal section, and height of the section above the surface
-        [m], from the keel up
-    density, gravity : density of the water [kg/m³] and acceleration of gravity [m/s²]
+    The water is deep, `profile` is as in `Buoy`, and pitch refers to the surface.
+
+    Returns
+    -------
+    Complex array (12, f). Row 0 is the angular frequency ω [rad/s]. Rows 1 to 8 are pairs of added
+    mass and damping: heave, surge, coupling of surge with pitch, pitch. Rows 9 to 11 are the
+    exciting forces per metre of elevation in heave, and in surge and pitch divided by ω².
 
     Raises
     ------

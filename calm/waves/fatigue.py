@@ -15,14 +15,13 @@ from calm.physics.materials import fibre_of, materials_in
 def greatest_of(deviation: float, period: float, duration: float) -> float:
     """Return the most probable maximum of a Gaussian process, measured from its mean.
 
-    The formula is σ √(2 ln N) with N = duration / zero-crossing period (Longuet-Higgins 1952). The
-    result is 0 for a constant process.
+    The formula is σ √(2 ln N), where N = duration / period (Longuet-Higgins 1952). The result is 0
+    for a constant process.
 
     Parameters
     ----------
     deviation : standard deviation σ, in the unit of the result
-    period : time between upward crossings of the mean [s]
-    duration : duration for which the maximum is computed [s]
+    period, duration : zero-crossing period, and duration for which the maximum is computed [s]
     """
     if not deviation > 0.0 or isnan(period):
         return 0.0
@@ -32,13 +31,8 @@ def greatest_of(deviation: float, period: float, duration: float) -> float:
 def passing_probability(margin: float, deviation: float, period: float, duration: float) -> float:
     """Return the probability that a Gaussian process departs from its mean by more than a margin.
 
-    The formula is 1 - exp(-N exp(-½ (margin/σ)²)), with N as in `greatest_of` (Rice 1945).
-
-    Parameters
-    ----------
-    margin, deviation : departure from the mean, and standard deviation σ, in the same unit
-    period : time between upward crossings of the mean [s]
-    duration : duration for which the probability is computed [s]
+    The formula is 1 - exp(-N exp(-½ (margin/σ)²)), where N = duration / period (Rice 1945).
+    `margin` and the standard deviation σ have the same unit; for the periods, see `greatest_of`.
     """
     if deviation <= 0.0:
         return 0.0 if margin > 0.0 else 1.0
@@ -58,15 +52,14 @@ tensions measured at sea is wider (`calm.waves.measured`).
 
 @dataclass(frozen=True)
 class FatigueCurve:
-    """Fatigue curve N = K R^-m for the number N of cycles to failure at a tension range R.
+    """Fatigue curve N = K R^-m for the number N of cycles to failure at the range R.
 
     Attributes
     ----------
-    slope : exponent m of the curve
-    logarithm : log10 of K
-    by_mean : decrease of log10 K if the mean tension increases by the breaking load
-    range : definition of R, which is the range of the `stress` in the steel [MPa], or the range of
-        tension as a `share` of the breaking load
+    slope, logarithm : exponent m, and log10 of K at zero mean tension
+    by_mean : decrease of log10 K for a mean tension equal to the breaking load
+    range : meaning of R: range of `stress` in the steel [MPa], or range of tension as a `share` of
+        the breaking load
     source : publication that gives the curve
     """
 
@@ -107,13 +100,14 @@ mean is not stated.
 
 @dataclass(frozen=True)
 class PieceFatigue:
-    """Fatigue of a piece.
+    """Fatigue of a piece; values are None if unknown.
 
-    Values are None if no curve applies or if a required parameter is unknown. `life` is the time
-    until the damage is 1 [years]. `life_low` is the life if the standard deviations of tension are
-    larger by the fraction `BAND`, and `life_high` the life if they are smaller. `life_half_cut_off`
-    and `life_twice_cut_off` are the lives for half and for twice the cut-off frequency of the
-    waves. `unknown` gives the reason why there are no values.
+    Attributes
+    ----------
+    life : time until the damage is 1 [years]
+    life_low, life_high : lives for standard deviations of tension larger and smaller by `BAND`
+    unknown : reason why there are no values
+    life_half_cut_off, life_twice_cut_off : lives for half and for twice the cut-off frequency
     """
 
     index: int
@@ -145,13 +139,11 @@ def moments_of(omega: Floats, spectral: Floats) -> Floats:
 def dirlik(moments: Sequence[float], slope: float) -> float:
     """Return the expected sum of R^slope over all rainflow ranges R per second.
 
-    The distribution of the ranges is a sum of an exponential and two Rayleigh distributions, fitted
-    to simulations (Dirlik 1985, Application of computers in fatigue analysis, University of
-    Warwick).
+    Source: Dirlik 1985, Application of computers in fatigue analysis, University of Warwick.
 
     Parameters
     ----------
-    moments : spectral moments m0, m1, m2, m4 from `moments_of`
+    moments : spectral moments m0, m1, m2, m4 of the tension
     slope : exponent of the fatigue curve
     """
     zeroth, first, second, fourth = moments
@@ -176,9 +168,9 @@ def dirlik(moments: Sequence[float], slope: float) -> float:
 def narrow_band(moments: Sequence[float], slope: float) -> float:
     """Return the result of `dirlik` in the limit of a narrow-band process.
 
-    The ranges of such a process have a Rayleigh distribution. The result is ν0 (2 √(2 m0))^m Γ(1 +
-    m/2), with the exponent m = `slope` and the rate ν0 of upward crossings of the mean. This is an
-    upper bound for all processes with the same moments m0 and m2 (Rychlik 1993).
+    The result is ν0 (2 √(2 m0))^m Γ(1 + m/2), with m = `slope` and the rate ν0 of upward crossings
+    of the mean. This result is an upper bound for all processes with the same m0 and m2 (Rychlik
+    1993).
     """
     zeroth, _, second, _ = moments
     if not zeroth > 0.0:
@@ -210,12 +202,11 @@ def fatigue_of(
 ) -> PieceFatigue:
     """Compute the damage per year of a piece, summed over the sea states by Miner's rule.
 
+    Corrosion reduces the diameter, and reduces the strength with the square of the diameter.
+
     Parameters
     ----------
-    component, index, label : component, index and label of the piece. Corrosion reduces the
-        diameter, and reduces the strength in proportion to the square of the diameter
-    seas : for each sea state, the share of time, the mean tension [N], and the spectral moments of
-        the tension
+    seas : share of time, mean tension [N], and spectral moments of tension for each sea state
     """
     name, strength = curve_of(component), component.breaking_load
     size = getattr(component, "diameter", None)

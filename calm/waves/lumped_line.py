@@ -39,32 +39,28 @@ CYLINDER_ADDED, SPHERE_ADDED, BODY_ADDED = 1.0, 0.5, 1.0
 
 @dataclass(frozen=True)
 class LumpedLine:
-    """Line of n lumped masses from the free end down, with n - 1 springs between the masses.
+    """Line of n lumped masses with n - 1 springs between the masses, free end first.
 
-    The last mass does not move.
+    The last mass does not move. Unit vectors point down the line. Normal and tangential values are
+    for motion normal to the line and along the line.
 
     Attributes
     ----------
     position : (n, 3) position east, north, and up from the surface [m]
-    mass : (n,) mass at each node [kg]
-    added_across, added_along : (n,) added mass normal and tangential to the line [kg]
-    water_across, water_along : (n,) mass of water on which the pressure of the waves acts, normal
-        and tangential to the line [kg]; a cable or chain has no tangential mass
-    across_drag, along_drag, any_drag : (n,) K of the drag K|v|v for the flow normal to the line,
-        for the tangential flow, and for flow in any direction [N/(m/s)²]
-    tangent : (n, 3) unit vectors along the line at the nodes, pointing down the line
-    tension : (n-1,) tension of the springs in equilibrium [N]
-    stiffness : (n-1,) stiffness of the springs, dT/d(length) [N/m]
-    spring : (n-1, 3) unit vectors along the springs, pointing down the line
+    added_across, added_along : (n,) normal and tangential added mass [kg]
+    water_across, water_along : (n,) mass of displaced water for normal and tangential wave pressure
+        [kg]; the tangential mass of a cable or chain is 0
+    across_drag, along_drag, any_drag : (n,) K of the drag K|v|v for normal flow, for tangential
+        flow, and for flow in any direction [N/(m/s)²]
+    tangent, spring : (n, 3), (n-1, 3) unit vectors at the nodes and along the springs
+    tension, stiffness : (n-1,) tension of the springs [N], and their stiffness dT/d(length) [N/m]
     span : (n-1,) stretched lengths of the springs [m]
     current : (n, 3) current at the nodes [m/s]
-    piece_spring : (pieces,) index of the spring just below the upper end of each piece; for pieces
-        of the top float, index of the spring just below the float; -1 for pieces on the seabed
-    piece_below : (pieces,) index of the next spring of the same piece; if there is no such spring,
-        the same as `piece_spring`
+    piece_spring, piece_below : (pieces,) indices of each piece's first and second spring. A piece
+        of the top float has the first spring below the float, a piece on the seabed has -1, and a
+        piece with one spring has this spring twice
     piece_node : (pieces,) node at the upper end of each piece; -1 on the seabed
-    top_pieces : number of pieces of the top float, including the pieces that it carries above the
-        surface
+    top_pieces : number of pieces of the top float, with the pieces that the float carries
     inextensible : labels of cables with unknown stiffness
     """
 
@@ -90,18 +86,18 @@ class LumpedLine:
     inextensible: tuple[str, ...]
 
     def turned(self, motion: Complexes) -> Complexes:
-        """Return the rotation (f, n-1, 3) of the springs [rad] for motions (f, n, 3) of the nodes.
+        """Return the rotations of the springs [rad] for given motions of the nodes.
 
-        The rotation is given as the change of the unit vector along each spring.
+        Motions (f, n, 3) give rotations (f, n-1, 3): the changes of the unit vectors along the
+        springs.
         """
         turn = np.diff(motion, axis=1) / self.span[:, None]
         return np.asarray(turn - (turn * self.spring).sum(2, keepdims=True) * self.spring)
 
     def upper_ends(self, middle: Complexes) -> Complexes:
-        """Extrapolate values (f, n-1, …) from the midpoints of springs to the upper ends of pieces.
+        """Extrapolate values from the midpoints of springs to the upper ends of pieces.
 
-        The extrapolation is linear, from the first two springs of a piece. The value is 0 for
-        pieces on the seabed.
+        The arrays are (f, n-1, …) and (f, pieces, …). The value is 0 for pieces on the seabed.
         """
         first, next_one = self.piece_spring, self.piece_below
         share = self.span[first] / (self.span[first] + self.span[next_one])
@@ -111,15 +107,13 @@ class LumpedLine:
 
 
 def lumped_line(leg: Leg, solution: Solution, longest: float) -> LumpedLine:
-    """Represent the line of a solution by lumped masses and springs.
+    """Represent the line of an equilibrium by lumped masses and springs.
 
-    Half of the mass of an element, and half of its drag, is lumped at each of its ends. Parts on
-    the seabed do not move and are omitted.
+    Parts on the seabed are omitted, since they do not move.
 
     Parameters
     ----------
     leg : leg to which the solution belongs
-    solution : equilibrium of this leg
     longest : largest length of an element [m]
     """
     pieces = leg.file.pieces

@@ -1,11 +1,9 @@
 """Ratio of tensions measured at sea to computed tensions, for low and for high seas.
 
-The Southern Ocean Flux Station (SOFS, 47° S, 4600 m of water, disc buoys of 2.7 m on inverse
-catenaries) had a load cell below its buoy. Five of its lines are described well enough to be
-computed: SOFS-1 and SOFS-3 to SOFS-6. Standard deviations of the tension are compared in bins of
-significant height from 1.5 to 9.5 m, with the peak periods that the load cases of the station have
-for these heights. No parameter was fitted. The comparison is in `tests/validation/test_sofs.py`;
-the measurements are from petejan/sots-cable-model.
+The tensions were measured below the disc buoys of the Southern Ocean Flux Station (SOFS, 47° S,
+4600 m of water), on the lines SOFS-1 and SOFS-3 to SOFS-6. Standard deviations are compared in
+bins of significant height; no parameter was fitted. The comparison is in
+`tests/validation/test_sofs.py`. The measurements are from petejan/sots-cable-model.
 """
 
 from __future__ import annotations
@@ -26,8 +24,8 @@ COMPARED = 1.0, 10.0
 class MeasuredBand:
     """Range, from `low` to `high`, of the ratio of measured to computed tension.
 
-    The ratio compares standard deviations of tension. `from_height` and `to_height` are the
-    smallest and largest significant wave heights in the comparison [m].
+    The ratio compares standard deviations. `from_height` and `to_height` are the limits of
+    significant wave height in the comparison [m].
     """
 
     low: float
@@ -51,10 +49,9 @@ they are 1.44 to 2.24 and 1.12 to 1.66.
 def measured_band(
     significant_height: float, heave: Literal["filtered", "panels", "follows"]
 ) -> MeasuredBand:
-    """Return the range of the ratio of measured to computed tension below a float at the surface.
+    """Return the range of measured to computed tension below a float at the surface.
 
-    For a sea state outside the range of the comparison, the result is the band for the nearest wave
-    height.
+    Beyond the compared wave heights, the band for the nearest wave height is returned.
 
     Parameters
     ----------

@@ -28,10 +28,12 @@ if TYPE_CHECKING:
 class PieceLoads:
     """Tensions of a piece in a sea state [N].
 
-    `tension_max` and `tension_min` are the most probable maximum and minimum at the upper end
-    within the duration of the analysis. `greatest` and `least` are the maximum and minimum over the
-    whole piece. `slack_probability` is the probability that the upper end becomes slack within this
-    duration.
+    Attributes
+    ----------
+    tension_max, tension_min : most probable maximum and minimum at the upper end within the
+        duration of the analysis
+    slack_probability : probability that the upper end becomes slack within this duration
+    greatest, least : most probable maximum and minimum over the whole piece
     """
 
     tension_std: float
@@ -46,13 +48,13 @@ class PieceLoads:
 class PieceInWaves:
     """Results for a piece of the line in a sea state.
 
-    The tensions are defined in `PieceLoads`. Heave is in m, and tilt in degrees.
+    Tensions are defined in `PieceLoads`. Heave is in m, and tilt in degrees.
 
     Attributes
     ----------
     half_cut_off, twice_cut_off : tensions for half and for twice the cut-off frequency of the waves
-    measured_low, measured_high : tensions with the standard deviation multiplied by
-        `MeasuredBand.low` and `MeasuredBand.high`; None if no band applies
+    measured_low, measured_high : tensions scaled by the limits of the `MeasuredBand`; None if no
+        band applies
     """
 
     index: int
@@ -82,8 +84,8 @@ with the largest standard deviation.
 class CutOffs(NamedTuple):
     """Responses to a sea state for three cut-off frequencies of the waves.
 
-    The fields are the responses for the cut-off frequency of the analysis, for half this frequency,
-    and for twice this frequency.
+    They are the cut-off frequency of the analysis, half of this frequency, and twice this
+    frequency.
     """
 
     full: WaveResponse
@@ -100,17 +102,15 @@ class MooringInSea:
     components : results for the pieces, from the top down
     slack : labels of the pieces that become slack
     cut_off : cut-off frequency of the waves [rad/s]
-    band : range of measured divided by computed standard deviations of tension; None for a line
-        below the surface and for a float with a prescribed response
-    follower_std : standard deviation of the tension below the float if the float followed every
-        wave [N]; computed only in the highest sea state, and None for other sea states and for a
-        line below the surface
+    band : range of measured to computed tension; None below the surface or for a prescribed
+        response
+    follower_std : standard deviation of the tension below a float that follows every wave [N]; only
+        in the highest sea state
     pitch_std : standard deviation of the pitch of the float [degrees]; None if unknown
-    moments : spectral moments of the tension in the pieces, for the cut-off frequency, half this
-        frequency, and twice this frequency
+    moments : spectral moments of tension, for the three cut-off frequencies in `CutOffs`
     spectrum : angular frequencies [rad/s], and spectrum of the tension at the top [N² s/rad]
-    along : depth [m] of points down the line, and mean, standard deviation and maximum of the
-        tension at these points [N]
+    along : depths down the line [m], and mean, standard deviation and maximum of the tension there
+        [N]
     """
 
     sea: SeaState
@@ -152,8 +152,9 @@ class _Tensions:
         self.mean, self.duration = line.tension, duration
 
     def loads(self, piece: int, mean: float, own: slice, factor: float = 1.0) -> PieceLoads:
-        """Return the tensions of a piece with the springs `own`; standard deviations are multiplied
-        by `factor`.
+        """Return the tensions of a piece, with standard deviations multiplied by `factor`.
+
+        `mean` is the mean tension at the upper end [N], and `own` selects the springs of the piece.
         """
         deviation, apart = factor * float(self.at_ends[piece]), float(self.periods[piece])
         most = greatest_of(deviation, apart, self.duration)
@@ -168,9 +169,9 @@ class _Tensions:
         )
 
     def most_moved(self, mean: float, own: slice) -> tuple[float, Floats]:
-        """Return mean and spectral moments at the spring with the largest standard deviation.
+        """Return mean and spectral moments of tension at the spring with the largest deviation.
 
-        The moments are 0 on the seabed.
+        The moments are 0 for a piece on the seabed.
         """
         if own == slice(0):
             return mean, np.zeros(4)
@@ -188,13 +189,13 @@ def mooring_in_sea(
     duration: float,
     follower: float | None,
 ) -> MooringInSea:
-    """Compute tensions and motions of the pieces of a mooring from the responses to a sea state.
+    """Compute tensions and motions of the pieces of a mooring in a sea state.
 
     Parameters
     ----------
-    responses : responses for the cut-off frequency, half this frequency, and twice this frequency
-    duration : duration for which the maximum and minimum tension are computed [s]
-    follower : value for `MooringInSea.follower_std`
+    responses : responses of the line to this sea state
+    duration : duration for which maximum and minimum tension are computed [s]
+    follower : value of `MooringInSea.follower_std`
     """
     response = responses.full
     pitches = buoy is not None and buoy.profile is not None

@@ -39,16 +39,15 @@ _WEIGHTS = _WEIGHTS / _WEIGHTS.sum()
 
 @dataclass(frozen=True)
 class WaveResponse:
-    """Transfer functions of a line per metre of wave elevation, at the frequencies of a sea state.
+    """Transfer functions of a line per metre of wave elevation, at f frequencies of a sea state.
 
     Attributes
     ----------
-    omega : (f,) angular frequency [rad/s]
+    omega : (f,) angular frequencies [rad/s]
     weight : (f,) variance of the elevation that each frequency represents [m²]
     motion : (f, n, 3) displacement of the nodes [m/m]
     pull : (f, n-1) change of the tension in the springs [N/m]
-    pitch : (f,) pitch of the float, positive if the top moves in the direction of wave travel
-        [rad/m]
+    pitch : (f,) pitch of the float [rad/m], positive if the top moves with the waves
     """
 
     omega: Floats
@@ -58,10 +57,9 @@ class WaveResponse:
     pitch: Complexes
 
     def moments(self, transfer: Complexes) -> tuple[Floats, Floats]:
-        """Return the standard deviations and zero-crossing periods [s] of responses to the sea
-        state.
+        """Return standard deviations and zero-crossing periods [s] of responses to the sea state.
 
-        The responses are given by transfer functions (f, …).
+        `transfer` has the transfer functions (f, …) of the responses.
         """
         shape = (-1,) + (1,) * (transfer.ndim - 1)
         spectral = np.abs(transfer) ** 2 * self.weight.reshape(shape)
@@ -72,11 +70,7 @@ class WaveResponse:
         return np.sqrt(zeroth), period
 
     def below(self, limit: float) -> WaveResponse:
-        """Return the response to the waves with frequencies below `limit` [rad/s].
-
-        Each frequency stands for the waves in an interval that ends halfway to the neighbouring
-        frequencies.
-        """
+        """Return the response to the waves with frequencies below `limit` [rad/s]."""
         middle = 0.5 * (self.omega[1:] + self.omega[:-1])
         edges = np.concatenate([self.omega[:1], middle, self.omega[-1:]])
         share = (limit - edges[:-1]) / np.diff(edges)
@@ -95,7 +89,7 @@ class Waves:
 
     Attributes
     ----------
-    omega : (f,) angular frequency [rad/s]
+    omega : (f,) angular frequencies [rad/s]
     toward : direction in which the waves travel [degrees], clockwise from north
     depth, density, gravity : water depth [m], density [kg/m³], and acceleration of gravity [m/s²]
     """
@@ -117,10 +111,10 @@ class Waves:
         return np.array([np.sin(radians(self.toward)), np.cos(radians(self.toward)), 0.0])
 
     def velocity(self, position: Floats) -> Complexes:
-        """Return the velocity of the water per metre of wave elevation [1/s].
+        """Return the velocity of the water (f, n, 3) per metre of wave elevation [1/s].
 
-        The result (f, n, 3) is for f frequencies and n positions (n, 3) [m]. The elevation is the
-        real part of e^(i(ωt - ks)), where s is the distance in the direction of travel.
+        `position` is (n, 3) [m]. The elevation is the real part of e^(i(ωt - ks)), where s is the
+        distance in the direction of travel.
         """
         k, omega = self.number[:, None], self.omega[:, None]
         ahead, height = self.ahead, np.minimum(position[:, 2], 0.0)[None, :]
@@ -136,13 +130,18 @@ class Waves:
 
 
 class _Afloat(NamedTuple):
-    """Dynamic stiffness of a float and exciting forces on it, without drag.
+    """Dynamic stiffness of a float and exciting forces on the float, without drag.
 
-    The four degrees of freedom are the translations of the attachment point of the line, and pitch.
-    `held` (f, 4, 4) is the stiffness and `pushed` (f, 4) the force per metre of elevation. Drag
-    acts at p points: `ways` (p, 3, 4) gives the motion of these points per unit of each degree of
-    freedom, and `water` (f, p, 3) the velocity of the water there. The bottom has a rotational drag
-    with the factor `turning`, relative to the `slope` (f,) of the waves.
+    The degrees of freedom are the three translations of the bail, and pitch.
+
+    Attributes
+    ----------
+    held : (f, 4, 4) stiffness
+    pushed : (f, 4) exciting force per metre of wave elevation
+    ways : (p, 3, 4) motion of p points with drag, per unit of each degree of freedom
+    water : (f, p, 3) velocity of the water at these points
+    turning : factor of the rotational drag on the bottom
+    slope : (f,) slope of the waves, for the rotational drag
     """
 
     held: Complexes
@@ -185,8 +184,9 @@ class _Afloat(NamedTuple):
         return cls(held, pushed * elevation[:, None], ways, waves.velocity(at), drag, slope)
 
     def dragged(self, omega: Floats, drag: Floats, turning: float) -> tuple[Complexes, Complexes]:
-        """Return stiffness and exciting forces, including a linear drag (3, 3) and a rotational
-        drag.
+        """Return stiffness (f, 4, 4) and exciting force (f, 4), with linear drag.
+
+        `drag` (3, 3) is the drag on translations, and `turning` the drag on rotation.
         """
         each = drag / len(self.ways)
         whole = np.einsum("pca,cd,pdb->ab", self.ways, each, self.ways)
@@ -207,25 +207,22 @@ def respond(
     first: Floats | None = None,
     once: bool = False,
 ) -> tuple[WaveResponse, Floats]:
-    """Compute the response of a line to a sea state.
+    """Compute the linear response of a line to a sea state.
 
-    The drag on each node is replaced by a linear drag that dissipates the same energy on average.
-    For a Gaussian flow v' about the mean current, the coefficient of the linear drag is E[F v'] /
-    E[v'²]. The coefficients are updated until the motions converge.
+    Drag is replaced by a linear drag with the coefficient E[F v'] / E[v'²] for a Gaussian flow v'
+    about the mean current. The linear drag dissipates the same energy on average.
 
     Parameters
     ----------
-    line, buoy : the line, and the float at the surface (None for a line below the surface)
-    waves, sea : the waves, and the sea state that defines their spectrum
-    drag_factor : factor by which the linear drag is multiplied, for a sensitivity test
-    first : initial estimate of the flow past the nodes, such as the flow in a similar sea
+    buoy : float at the surface; None for a line below the surface
+    drag_factor : factor on the linear drag, for a sensitivity test
+    first : initial estimate of the flow past the nodes
     once : whether to use the flow `first` without iteration
 
     Returns
     -------
-    The response, and the flow past the nodes for which drag is linearised. The flow is an array (n
-    + 1, 3): standard deviations along the three axes of each node [m/s], followed by a row for the
-    pitch of the float.
+    The response, and the flow past the nodes (n + 1, 3): standard deviations along the axes of each
+    node [m/s], and a last row for the pitch of the float.
     """
     omega = waves.omega
     steps = np.diff(omega, prepend=omega[0], append=omega[-1])
@@ -346,9 +343,7 @@ FREQUENCIES_AT_ONCE = 16
 
 
 def _undamped(line: LumpedLine) -> tuple[Floats, Floats]:
-    """Return the springs below the nodes, (n-1, 5) as in `MassChain`, and the masses (n-1, 3, 3)
-    of the nodes.
-    """
+    """Return springs (n-1, 5) as in `MassChain`, and masses (n-1, 3, 3) of the nodes above them."""
     eye, t, sideways = np.eye(3), line.tangent, line.tension / line.span
     outer = t[:, :, None] * t[:, None, :]
     mass = line.mass[:, None, None] * eye + line.added_across[:, None, None] * (eye - outer)
@@ -364,9 +359,9 @@ def _solved(
     forced: Complexes,
     damping: Floats,
 ) -> Complexes:
-    """Solve for the motion (f, n, 3) of the nodes, one block-tridiagonal system per frequency.
+    """Solve for the motion (f, n, 3) of the nodes.
 
-    `top` holds the stiffness (f, 3, 3) and the force (f, 3) of the float at the first node.
+    `top` is the stiffness (f, 3, 3) and the exciting force (f, 3) of the float at the first node.
     """
     push, stiffness = forced + _times(damping, water), np.zeros((len(omega), 3, 3), complex)
     if top is not None:
@@ -438,9 +433,7 @@ def _pull(line: LumpedLine, motion: Complexes) -> Complexes:
 
 
 def wave_numbers(omega: Floats, depth: float, gravity: float) -> Floats:
-    """Return the wave numbers k of linear waves [1/m].
-
-    The equation ω² = g k tanh(k h) is solved by Newton's method.
+    """Return the wave numbers k of linear waves [1/m], from ω² = g k tanh(k h).
 
     Parameters
     ----------
