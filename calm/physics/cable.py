@@ -39,27 +39,38 @@ from calm.physics.track import CableStretch
 # without damping, a slack segment at the upper edge of a current would alternate between hanging
 # vertically and trailing with the current
 PASSES, STALLED = 200, 50
-"""Largest number of iterations for one segment, and the number after which the iterations are
-damped by one half.
+"""PASSES is the largest number of iterations for one segment.
+
+After STALLED iterations, each iteration makes only half of the computed change.
 """
 SWITCH_TOLERANCE = 1e-6
 """Accuracy of the position at which a drag law switches, as a fraction of the segment."""
 OF_FRICTION, OF_STRUMMING = range(2)
 """Kinds of drag laws that switch, see `switch_at`."""
 AT_A_LEVEL, TRIALS = 1e-9, 10
-"""Distance from a level that counts as reaching the level, as a fraction of the segment's depth
-range, and largest number of iterations to end a part of a segment at a level.
+"""Parameters of the search for the part of a segment that ends at a level of the water profile.
+
+AT_A_LEVEL is the allowed distance from the level, as a fraction of the segment's depth range.
+TRIALS is the largest number of iterations.
 """
 Passed = tuple[float, State, float, State, float]
-"""A marched part of a segment:
+"""A marched part of a segment, as five values.
 
-- unstretched length [m];
-- state at the midpoint, and strain of the upper half; without halves, state at the top, and 0;
-- state at the bottom, and strain of the lower half; without halves, strain of the whole part.
+A part that is marched in two halves has
+
+- the unstretched length [m];
+- the state at the midpoint;
+- the strain of the upper half;
+- the state at the bottom;
+- the strain of the lower half.
+
+A part that is marched in one piece has the state at the top as second value, 0 as third value, and
+the strain of the whole part as last value.
 """
 SETTLED_ROTATION = 1e-6
-"""Squared rotation of a segment [rad²] in the last of a few Newton steps below which an approximate
-march accepts the segment.
+"""Largest squared rotation of a segment in the last Newton step of an approximate march [rad²].
+
+After a larger rotation, the axis of the segment is computed to full precision.
 """
 
 
@@ -76,10 +87,10 @@ def segment_lift(cable: CableStretch, cut: float, density: float, gravity: float
 
 
 def segment_area(cable: CableStretch, cut: float, density: float, strain: float) -> float:
-    """Return the drag area of a segment, as the equivalent length of unstretched cable [m].
+    """Return the length of unstretched cable that has the same drag in reference water [m].
 
-    The equivalent length refers to reference water. Stretch increases the length by √(1 + strain)
-    if `thinning` is ½ (constant volume), and not at all if `thinning` is 0.
+    Stretch multiplies this length by √(1 + strain) if `thinning` is ½ (constant volume). Stretch
+    has no effect if `thinning` is 0.
     """
     area = cut * density / REFERENCE_DENSITY
     if strain != 0.0 and cable.thinning != 0.0:
@@ -234,8 +245,9 @@ def vibrating_share(
 ) -> tuple[float, float]:
     """Return the factor c of `drag_share` for a strumming cable, and the strumming factor f.
 
-    f is the normal drag divided by the normal drag without strumming. (tx, ty, tz) is the latest
-    estimate of the axis, of any length; f applies to this axis if drag hardly rotates the segment.
+    f is the normal drag divided by the normal drag without strumming. If drag hardly rotates the
+    segment, f is computed for the axis (tx, ty, tz), the latest estimate. This vector may have any
+    length.
     """
     speed = sqrt(u * u + v * v + w * w)
     if speed == 0.0:
@@ -447,9 +459,10 @@ def until_switch(
 def switch_at(vibration: Vibration, sea: Sea, state: State, law: int) -> float:
     """Return a quantity whose sign changes where a drag law switches.
 
-    - `OF_FRICTION` (friction of constant size reverses): flow along the cable times tension [N
-      m/s], positive down the line;
-    - `OF_STRUMMING` (the strumming factor reaches its limit): limit minus unlimited factor [-].
+    - `OF_FRICTION`: the tangential flow times the tension, positive down the line [N m/s].
+      Friction of constant size reverses if the sign changes.
+    - `OF_STRUMMING`: the limit of the strumming factor, minus the strumming factor without this
+      limit [-].
     """
     _, _, z, fx, fy, fz, _, level = state
     u, v, w, _, _ = water_at(sea, -z, level)
@@ -511,9 +524,9 @@ def rate_of_turn(
     tz: float,
     angle_step: float,
 ) -> float:
-    """Return the tension of a cable divided by its allowed segment length [N/m].
+    """Return the tension divided by the longest segment that the angle step allows [N/m].
 
-    The load is computed in the water at `depth`, for a cable with unit axis t.
+    The load on the cable is computed in the water at `depth`, for a cable with unit axis t.
     """
     u, v, w, density, _ = water_at(sea, depth, level)
     lift = segment_lift(cable, 1.0, density, sea.gravity)

@@ -47,7 +47,7 @@ _within: set[Law] = set()
 
 
 def optimised(law: Fn) -> Fn:
-    """Mark a law with long calls, for which all passes of level `OPTIMISATION` save time."""
+    """Mark a law whose calls take so long that full optimisation (`OPTIMISATION`) pays."""
     _optimised.add(law)
     return law
 

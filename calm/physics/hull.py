@@ -12,8 +12,10 @@ AIR_DENSITY = 1.225
 """Density of the air above the water [kg/m³], from the standard atmosphere at sea level."""
 
 AWASH = 0.02
-"""Reserve buoyancy, as a fraction of the buoyancy, below which the parts above the surface are
-gradually submerged. This avoids a jump of the drag when the line pulls the float under.
+"""Fraction of unused buoyancy at which a float begins to submerge the parts above the surface.
+
+The parts submerge gradually as the unused buoyancy falls to zero. This avoids a jump of the drag
+when the line pulls the float under.
 """
 
 SPHERE, SPAR, TABULATED = range(3)
@@ -124,7 +126,7 @@ class Riding(NamedTuple):
     ----------
     draft, freeboard : draft and freeboard [m]; NaN if the hull is unknown
     standing : fraction of the float's height above the water
-    above : fraction (0 to 1) out of the water of the pieces rigidly connected above the float
+    above : emerged fraction of the pieces that are rigidly connected above the float, 0 to 1
     drag : drag at the surface divided by the drag when fully immersed
     push_east, push_north : wind force [N]
     """
@@ -152,10 +154,10 @@ class Floating:
     hull : hull of the float; None if the draft is unknown
     weight : weight in air [N]
     lift : net buoyancy when fully immersed [N]
-    surface_drag : drag at the surface divided by the drag when fully immersed; None for the
-        immersed fraction of the area
+    surface_drag : drag at the surface divided by the drag when fully immersed; if None, the
+        immersed fraction of the lateral area
     wind : wind velocity to the east and north [m/s]
-    wind_area : area exposed to the wind [m²]; None for the hull above the water
+    wind_area : area exposed to the wind [m²]; if None, the emerged lateral area of the hull
     wind_cd : drag coefficient of the area exposed to the wind
     """
 

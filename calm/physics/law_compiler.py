@@ -62,7 +62,10 @@ def _functions_in(path: str) -> dict[str, ast.FunctionDef]:
 
 
 def _bound_once(tree: ast.FunctionDef) -> tuple[set[str], set[str]]:
-    """Return the names that are read, and the names that one statement sets before any reading."""
+    """Return two sets of names in a function: all names that are read, and names set only once.
+
+    A name counts as set only once if every statement that reads the name comes later.
+    """
     set_at: dict[str, list[Any]] = {each.arg: [((0, -1),)] for each in tree.args.args}
     read_at: dict[str, list[Any]] = {}
 
@@ -382,8 +385,13 @@ class _Body(Instructions):
     def finish(self, node: Any, ends: bool, over: str, end: str) -> bool:
         """Translate the `else` part of a loop, and begin the code after the loop.
 
-        `over` is the label at which the loop ends without `break`, if `ends` is true. Return
-        whether the next statement can be reached.
+        Return whether the statement after the loop can be reached.
+
+        Parameters
+        ----------
+        ends : whether the loop can end without `break`
+        over : label of the `else` part
+        end : label of the code after the loop
         """
         if ends:
             self._start(over)
@@ -527,7 +535,7 @@ class _Body(Instructions):
         return ArrayView(array, address, shape)
 
     def element(self, node: Any, owner: Any = None) -> tuple[Array, str]:
-        """Return the kind and the address of an element, or of a row of elements."""
+        """Return the kind and the address of the part of a sequence that the indices select."""
         view = self.viewed(owner or self.of(node.value))
         indices = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
         unit, address = size_of(view.kind.item), view.data
@@ -600,7 +608,7 @@ class _Body(Instructions):
         return self.either(node, self.number)
 
     def either(self, node: Any, of: Callable[[Any], Number]) -> Any:
-        """Translate `and` or `or`, whose value is the last of the values that are needed."""
+        """Translate `and` or `or`. The result is the last operand that Python evaluates."""
         stop, end = isinstance(node.op, ast.Or), self._label()
         values: list[Any] = []
         later: list[list[str]] = []
@@ -624,9 +632,12 @@ class _Body(Instructions):
         return gap
 
     def one_of(self, values: list[Any], later: list[list[str]]) -> Any:
-        """Merge the values of several branches into the value of the branch that runs.
+        """Return the value of the branch that is executed at run time.
 
-        The value of each branch is written at the branch's place in `later`.
+        Parameters
+        ----------
+        values : the value of each branch
+        later : for each branch, the place (`gap`) for the instructions that store its value
         """
         kind = values[0].kind
         for each in values:

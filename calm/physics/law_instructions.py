@@ -61,7 +61,7 @@ class Global(NamedTuple):
 
     @property
     def kind(self) -> "Global":
-        """Kind of a law's argument if this object is passed to the law."""
+        """The object itself, which serves as the kind of an argument."""
         return self
 
 
@@ -219,7 +219,7 @@ class Instructions:
         return address
 
     def call_law(self, law: Any, given: list[Any]) -> tuple[Any, Any]:
-        """Append the call of a law, and return the kind of its result and the result."""
+        """Append the call of a law. Return the kind of the result, and the result."""
         names = law.__code__.co_varnames[: law.__code__.co_argcount]
         for i, name in enumerate(names):
             hint = law.__annotations__.get(name)

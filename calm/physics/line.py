@@ -73,8 +73,8 @@ class Bed(NamedTuple):
 def off_bed(bed: Bed, x: float, y: float, z: float) -> float:
     """Return the height of a point above the seabed plane.
 
-    x, y, z are relative to any point on the plane. If x, y, z is a force, the result is the force
-    normal to the plane times √(1 + tan² slope).
+    x, y, z are relative to any point on the plane. If x, y, z is a force, the result is the normal
+    component of the force, multiplied by √(1 + tan² slope).
     """
     return z + bed.east * x + bed.north * y
 
@@ -93,16 +93,18 @@ array.
 """
 COLUMNS = 17
 SEGMENT, BETTER = 10, 11
-"""Column with the kind of an element's end (see below), and the first of six columns with
-extrapolated positions and forces.
+"""Columns of a record.
+
+- SEGMENT: kind of an element's end, `NO_SEGMENT` to `SPLITS`
+- BETTER: first of six columns with extrapolated positions and forces
 """
 NO_SEGMENT, ENDS, HALVES, SPLITS = range(4)
-"""Kinds of an element's end:
+"""Kinds of an element's lower end.
 
-- NO_SEGMENT: not part of a segment off the seabed;
-- ENDS: end of a segment;
-- HALVES: middle of a part that is marched in two halves;
-- SPLITS: level that splits a segment.
+- NO_SEGMENT: the element is rigid, is a clamp, or lies on the seabed
+- ENDS: end of a cable segment
+- HALVES: middle of a part of a segment that is marched in two halves
+- SPLITS: level of the water profile that splits a segment
 """
 
 
@@ -122,7 +124,7 @@ def write_element(
 ) -> None:
     """Write the element that ends at node n to a record.
 
-    `clamp` is the index of the clamp, or -1 if the element is part of the piece itself.
+    `clamp` is the index of the clamped instrument, or -1 if the element is a part of the piece.
     """
     record[6][n] = piece
     record[7][n] = clamp
@@ -138,8 +140,8 @@ class Trace:
     Attributes
     ----------
     position, force : (k+1, 3) position of each node [m], and force above the node [N]
-    piece, clamp : (k,) index of the piece, and of the clamp, of each element; clamp -1 for the
-        piece itself
+    piece : (k,) index of the piece to which each element belongs
+    clamp : (k,) index of the clamp that each element represents; -1 for a part of the piece
     cut, strain : (k,) unstretched length [m] and strain of each element; strain 0 for rigid pieces
         and clamps
     better : (k+1, 6) extrapolated position [m] and force [N] of each node, if the shape was refined
@@ -288,7 +290,11 @@ _ZERO_BY_DEFAULT = {
     "length": ("lift", "diameter", "push_east", "push_north"),
     "clamp_at": ("clamp_lift",),
 }
-"""Fields that default to zeros, each with the field that gives its length."""
+"""Optional arrays of a `Line`, whose default is zero.
+
+A key is the name of an array that is always given. The optional arrays in its value have the same
+length.
+"""
 
 _CURVES = ("elongation", "drag_curve", "clamp_drag_curve")
 

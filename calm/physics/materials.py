@@ -99,18 +99,20 @@ MATERIALS = (
 """All materials of components.
 
 Densities are handbook values. Potentials are the middle of the galvanic series in flowing sea water
-(ASTM G82); galvanised steel counts as steel, which its zinc protects.
+(ASTM G82). Galvanised steel has the potential of steel, which is protected by the zinc.
 
-Stiffnesses of ropes are from
+Stiffnesses of ropes are from three sources:
 
 - the tables of OrcaFlex, as adopted by MoorPy (nylon, polyester, polypropylene);
-- the moduli of R. Dewey's Mooring Design & Dynamics, on πD²/4;
+- R. Dewey's Mooring Design & Dynamics, whose moduli are multiplied by πD²/4;
 - MoorPy's default properties (nylon 5, polyester 14, HMPE 56 times the breaking load).
 
-The strength of wire is the highest usual tensile class for ropes, 2160 MPa (classes 1570 to 2160 of
-EN 12385-4 ropes, as listed by Prolift). Strengths of yarns differ by at most 17 % from the typical
-strengths of Tension Technology International (Synthetic fibre yarn properties: nylon and polyester
-0.84 N/tex, polypropylene 0.73, aramid 2.1, HMPE 3.1, Vectran 2.0).
+The strength of wire is 2160 MPa, the highest usual tensile class for ropes (classes 1570 to 2160 of
+EN 12385-4 ropes, as listed by Prolift).
+
+Strengths of yarns differ by at most 17 % from typical strengths published by Tension Technology
+International (Synthetic fibre yarn properties): nylon and polyester 0.84 N/tex, polypropylene 0.73,
+aramid 2.1, HMPE 3.1, Vectran 2.0.
 """
 
 MATERIAL_NAMES = ", ".join(material.name for material in MATERIALS)

@@ -55,15 +55,17 @@ Z, FX, FY, FZ, USED, NODES, LANDED, HANGING, GROUNDED, FAILURE = range(10)
 LEFT = 10
 
 SHORT = 1e-6
-"""Segment length, as a fraction of the longest segment, below which the load on a segment is not
-used as an estimate for the next segment.
+"""Length of a very short segment, as a fraction of the longest allowed segment.
+
+The load on a very short segment is not used as an estimate for the next segment.
 """
 EXACT, ROUGH = 1e-12, 1e-3
-"""Relative change of the mean flow along a segment above which the segment is split at a level: at
-full precision, and in other marches.
+"""Values of the parameter `share` of `counts_across`.
+
+EXACT is used for marches at full precision, and ROUGH for all other marches.
 """
 ROUNDING = 1e-12
-"""Relative cable length that may remain from rounding of sums and is ignored."""
+"""Rounding error of the sum of the segment lengths, as a fraction of the cable length."""
 
 
 class MarchSettings(NamedTuple):
@@ -75,8 +77,8 @@ class MarchSettings(NamedTuple):
     reach : largest length of a segment [m]
     near : allowed error of the depth at which the water is sampled [m]; 0 for full precision
     stages : number of stages to march
-    lands : whether a line may touch down, below its last buoyant piece, where the force normal to
-        the seabed vanishes
+    lands : whether a line may touch down. The touchdown is below the last buoyant piece, at the
+        point without a force normal to the seabed
     bed : the seabed
     given : whether the segments are given, instead of chosen by the march
     exact : whether segments are split at every level of the water profile, even without appreciable

@@ -10,13 +10,17 @@ from calm.physics.line import Floats, Water, once_per_input
 from calm.physics.seawater import REFERENCE_DENSITY
 
 LEAST_PART = 0.01
-"""Smallest length at which a chosen segment may end early, as a fraction of its full length."""
+"""Least length of a segment that is shortened to end at a kink of the drag.
+
+The length is a fraction of the segment's full length.
+"""
 
 
 NEAR_A_LEVEL = 1e-6
-"""Depth range beyond a level, as a fraction of the segment's depth range, below which the segment
-is not split at the level. Without this limit, a segment would be split again and again at a level
-with no flow.
+"""Limit for splitting a segment at a level, as a fraction of the segment's depth range.
+
+A segment that extends less far beyond the level is not split. Without this limit, a segment would
+be split again and again at a level with no flow.
 """
 
 
@@ -184,9 +188,9 @@ def counts_across(sea: Sea, k: int, off: float, length: float, share: float) -> 
     Parameters
     ----------
     k : index of the level
-    off : depth range of the segment on the far side of the level [m]
-    length : depth range of the segment [m]
-    share : twice the allowed difference, relative to the current or density [-]
+    off : depth range of the part of the segment beyond the level [m]
+    length : depth range of the whole segment [m]
+    share : twice the allowed difference, as a fraction of the current or density [-]
     """
     return off > NEAR_A_LEVEL * length and sea.bends[k] * off * off > share * length
 

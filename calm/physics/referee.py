@@ -17,10 +17,11 @@ from calm.physics.stretch import Knot, mean_curve_strain
 from calm.physics.strumming import Vibration, strummed
 
 ROUNDING = 32.0 * float_info.epsilon
-"""Relative rounding error of coordinates and forces, with respect to the largest."""
+"""Rounding error, as a fraction of the largest coordinate or force of the shape."""
 SETTLED = 1e-10
-"""Relative tolerance of a segment's load in the march, which converges to 4e-11 for a segment with
-a stretch of 2 %.
+"""Relative error that the march may leave in the load on a segment.
+
+For a segment with a stretch of 2 %, the error is 4e-11.
 """
 
 
@@ -31,8 +32,8 @@ class RefereeBody(NamedTuple):
     ----------
     smooth, lengthening : diameter [m] and `lengthening` of the body's `DragCurve`; 0 without a
         curve
-    first_knot, end_knot : range of the body's elongation curve in `Moored.knots`; equal without a
-        curve
+    first_knot, end_knot : the points `first_knot` to `end_knot` - 1 of `Moored.knots` are the
+        body's elongation curve. Both numbers are equal for a body without a curve
 
     Other attributes are as in `Line`.
     """
@@ -277,12 +278,12 @@ def strumming(
 def worst_moment(
     moored: Moored, shape: RefereeShape, loads: Sequence[MutableSequence[float]]
 ) -> float:
-    """Return the largest angle between an element and the mean of the forces at its ends [rad].
+    """Return the largest error of the moment balance of a shape [rad].
 
-    Forces are sums of `loads`. Elements on the seabed are excluded. For cables, the difference
-    between the strain and the strain expected from the forces counts like an angle. Angles and
-    differences are reduced by the rounding error of the coordinates, and angles also by the
-    relative error of the force.
+    The error of an element is the angle between its axis and the mean of the forces at its ends.
+    The forces are sums of `loads`. The error of a cable element may also be the difference between
+    the strain and the strain expected from the forces. All errors are reduced by the effect of
+    rounding errors. Elements on the seabed are ignored.
     """
     rounding = ROUNDING * greatest_size(shape, 0)
     hanging = shape.hanging

@@ -98,10 +98,10 @@ def pass_rod(
 
 
 def floating_depth(rod: Stage, loads: Sequence[Load], sea: Sea, out: float, near: float) -> float:
-    """Return the depth of the free end of a line [m] whose top extends above the surface.
+    """Return the depth [m] of the free end of a line if the topmost rod is partly out of the water.
 
-    The depth is negative. `out` is the length of the topmost rod above the surface [m]. A rod
-    without moment balance is assumed upright.
+    The depth is negative. `out` is the length of the emerged part of the rod [m]. The rod is
+    assumed upright if no axis is in moment balance.
     """
     depth = -out
     for _ in range(_LEANINGS):

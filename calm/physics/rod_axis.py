@@ -91,10 +91,10 @@ def lone_axis(
 def bracketed_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State) -> Vector:
     """Return the axis of a rod by bisection, if the iteration in `rod_axis` does not converge.
 
-    In water sampled at the depths for a vertical component s of the axis, the axis in balance has
-    the vertical component r(s), from -1 to 1. The bisection finds s = r(s). The vertical component
-    of the result is `NO_BALANCE` if r(s) - s jumps past zero and the moment does not vanish at the
-    jump.
+    A trial value s of the vertical component of the axis sets the depths at which the water is
+    sampled. In this water, the axis in moment balance has the vertical component r(s). The
+    bisection finds s = r(s). If r(s) - s jumps past zero, the axis at the jump is tried. If it is
+    not in balance, the vertical component of the result is `NO_BALANCE`.
     """
     low, high = -1.0, 1.0
     tx, ty, tz = 0.0, 0.0, -1.0
@@ -169,7 +169,8 @@ def _following_axis(
 ) -> Vector:
     """Return the next iterate of the axis of a rod, from the axis t.
 
-    The water is sampled at the depths of the loads for a vertical component `rise` of the axis.
+    The water is sampled at the depths that the loads have if the vertical component of the axis is
+    `rise`.
     """
     _, _, z, fx, fy, fz, _, level = state
     ax, ay, az = fx, fy, fz

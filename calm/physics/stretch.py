@@ -88,8 +88,8 @@ class ElongationCurve:
     ----------
     tensions, strains : points of the table, starting with (0, 0) [N], [-]
     knots : the curve in the form used by the march, including permanent elongation
-    limit : tension above which results need a warning [N]: the last point, at most 80 % of the
-        breaking load
+    limit : tension above which results need a warning [N]. The limit is the last point of the
+        table, but not more than 80 % of the breaking load
 
     Raises
     ------

@@ -58,8 +58,8 @@ class CableStretch(NamedTuple):
     piece : index of the piece in the line
     length : unstretched length [m]
     friction : number of the friction law, see `Friction`
-    first_knot, end_knot : range of the elongation curve in the knots of the track; equal without a
-        curve
+    first_knot, end_knot : the points `first_knot` to `end_knot` - 1 of `Track.knots` are the
+        elongation curve. Both numbers are equal for a cable without a curve
     diameter : diameter [m] if the cable strums, otherwise 0
 
     Other attributes are as in `Line`.
@@ -235,15 +235,16 @@ def head_count(line: Line) -> int:
 
 
 class _Rows:
-    """Columns of a line as rows of plain numbers, which are read much faster than array elements.
+    """Data of a `Line` as plain numbers, which Python reads much faster than array elements.
 
     Attributes
     ----------
     length, clamp_at : as in `Line`
-    rigid, clamp : fields of a `Load` after its length, by piece and by clamp
-    cable : fields of a `CableStretch` from `buoyancy` to `friction`, by piece
-    strums : diameter of the `CableStretch`, by piece
-    clamps : indices of the clamps of each piece, from the top
+    rigid : for each piece, the fields of its `Load` after `length`
+    clamp : for each clamp, the fields of its `Load` after `length`
+    cable : for each piece, the fields of its `CableStretch` from `buoyancy` to `friction`
+    strums : for each piece, the diameter of its `CableStretch` [m]
+    clamps : for each piece, the indices of its clamps from the top down
     """
 
     def __init__(self, line: Line) -> None:

@@ -1,8 +1,8 @@
 """Error estimates from shapes on coarse and on halved segments, and Richardson extrapolation.
 
 The march is of second order, so the error of the fine shape is one third of the change from the
-coarse to the fine shape. Richardson extrapolation adds this third to the fine shape. Segments must
-have no jumps or kinks.
+coarse to the fine shape. Richardson extrapolation adds this third to the fine shape. The load must
+have no jumps or kinks within a segment.
 """
 
 from math import sqrt
@@ -66,8 +66,8 @@ def extrapolate(before: Record, coarse: Extent, after: Record, fine: Extent, nea
     ----------
     before, coarse : record and extent of the shape on coarse segments
     after, fine : record and extent of the shape on halved segments
-    near : as in `MarchSettings`; not 0 in a batch, for which only piece ends and clamps are
-        extrapolated
+    near : as in `MarchSettings`. If `near` is not 0, the line belongs to a batch, and only piece
+        ends and clamps are extrapolated
     """
     end = fine.nodes - 1
     greatest = 0.0

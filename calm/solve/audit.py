@@ -3,8 +3,8 @@
 The audit shares no code with the march.
 
 - Force balance: buoyancy and drag of all elements sum to the force at the line's end.
-- Moment balance: every axis lies along the mean of its two end forces, and every cable has the
-  strain for this mean force.
+- Moment balance: the axis of every element is parallel to the mean of the forces at its two ends.
+  Every cable element also has the strain that this mean force causes.
 """
 
 from copy import copy

@@ -13,7 +13,10 @@ from numpy.typing import NDArray
 Numbers = NDArray[Any]
 
 CHUNK = 4
-"""Number of blocks eliminated together; the block after them stays in the reduced system."""
+"""Number of successive blocks that are eliminated together.
+
+The next block becomes a block of the smaller system.
+"""
 DENSE = 20
 """Largest number of blocks of a system that is solved as a single dense matrix."""
 

@@ -1,8 +1,9 @@
-"""Closing of a line: search for the value of its unknown at which the line ends at its target.
+"""Closing of a line: search for the equilibrium in which the line ends at its target.
 
-The target is the top of the anchor, or the seabed for a line with a touchdown. The *miss* is the
-height of the marched line's end above the target [m]. The miss falls as the free end goes deeper,
-or as more buoyancy is used.
+The target is the top of the anchor, or the seabed for a line with a touchdown. A line has one
+unknown: the depth of its free end, or the used fraction of a float's buoyancy. The *miss* is the
+height error of a marched line, the height of its end above the target [m]. The height error falls
+as the free end goes deeper, or as more buoyancy is used.
 """
 
 from math import isnan, nan
@@ -41,30 +42,40 @@ from calm.solve.problem import (
 from calm.solve.solution import FOUND, MARCH_STOPPED, MISSES, NO_SHAPE_NEAR, SLACK_ON_DIGITS
 
 OF_A_PART = 0.01
-"""Allowed miss of a light, slack part of a line, as a fraction of the allowed miss of the whole
-line.
+"""Allowed height error of the part of a line above a surface float.
+
+The value is a fraction of the allowed height error of the whole line. Such a part is light and
+slack.
 """
 NEARLY_LINEAR = 5e-3
-"""Miss, as a fraction of the span, below which the miss is nearly linear, so that a secant finds
-the root.
+"""Height error, as a fraction of the span, at which a final secant step is precise enough.
+
+Smaller height errors are nearly linear in the unknown of the line.
 """
 ABOUT, WELL_KNOWN = 2e-3, 1e-6
-"""Miss, as a fraction of the span, below which the segments are no longer changed: in a batch, and
-for a single line.
+"""Height error, as a fraction of the span, at which the choice of segments ends.
 
-A slack line chooses other segments if its miss is a thousandth of the span.
+ABOUT applies in a batch, WELL_KNOWN to a single line. With a height error of a thousandth of the
+span, a slack line would choose other segments.
 """
 COARSEST_BRACKET = 1e-7
 NARROWEST_BRACKET = 1e-15
-"""Relative width of the last bracket: for a march that chooses its segments, and for a march on
+"""Relative bracket width at which the search for an equilibrium ends.
+
+COARSEST_BRACKET applies to marches that choose their segments, NARROWEST_BRACKET to marches on
 fixed segments.
 """
 
 
 class Root(NamedTuple):
-    """Value x of a line's unknown at which the miss is zero, with the miss and its slope at x.
+    """An equilibrium of a line, exact or approximate.
 
-    `found` is false if the miss does not change sign. A miss of NaN means that a march stopped.
+    Attributes
+    ----------
+    found : whether there is an equilibrium
+    x : value of the unknown: depth of the free end [m], or used fraction of a float's buoyancy
+    miss : height error of the line's end at x [m]; NaN if a march failed
+    slope : derivative of the height error with respect to x
     """
 
     found: bool
@@ -80,8 +91,8 @@ class Closed(NamedTuple):
     Attributes
     ----------
     ending : FOUND, or the code of the reason for failure (see `calm.solve.solution`)
-    value, piece : number quoted with the reason, and index of the piece concerned
-    root : value of the line's unknown, and the remaining miss [m]
+    value, piece : number for the error message, and index of the piece concerned
+    root : the equilibrium, with the remaining height error
     nodes, hanging : number of nodes, and number of suspended elements
     landed, grounded : whether there is a touchdown, and unstretched length on the seabed [m]
     """
@@ -98,11 +109,12 @@ class Closed(NamedTuple):
 
 
 def whole_line(problem: LineProblem, lands: bool) -> Unknown:
-    """Return the unknown of a whole line whose free end is below the surface.
+    """Return the `Unknown` of a whole line: the depth of its free end.
 
     Parameters
     ----------
-    lands : whether the line may lie on the seabed, which is then its target
+    lands : whether the line may lie on the seabed. The target is then the seabed, otherwise the top
+        of the anchor
     """
     limits = problem.limits
     height = 0.0 if lands else limits.anchor_height
@@ -110,20 +122,24 @@ def whole_line(problem: LineProblem, lands: bool) -> Unknown:
 
 
 def down_to(problem: LineProblem, unknown: Unknown, lower: int) -> Unknown:
-    """Return the unknown of the part of a line above a given float, whose target is the surface."""
+    """Return the `Unknown` of the part of a line above a given float.
+
+    This part must end at the surface. `lower` is the index of the float in `problem.surfacing`.
+    """
     stages = int(problem.surfacing[lower].stage)
     return Unknown(0.0, unknown.sought, unknown.rides, False, stages)
 
 
 def with_sought(unknown: Unknown, sought: int, rides: bool) -> Unknown:
-    """Return a copy of an unknown, with `sought` and `rides` replaced."""
+    """Return a copy of an `Unknown`, with other values of `sought` and `rides`."""
     return Unknown(unknown.goal, sought, rides, unknown.lands, unknown.stages)
 
 
 def miss_at(about: About, x: float) -> float:
-    """March a line for a value of its unknown, and return the miss [m]; NaN if the march fails.
+    """March a line, and return the height error of its end [m], or NaN if the march fails.
 
-    The other results stay in the work arrays.
+    `x` is the depth of the free end, or the used fraction of a float's buoyancy. The other results
+    stay in the work arrays.
     """
     problem, unknown, work = about.problem, about.unknown, about.problem.work
     depth, out = place(problem, unknown, x)
@@ -150,11 +166,15 @@ def miss_at(about: About, x: float) -> float:
 
 
 def place(problem: LineProblem, unknown: Unknown, x: float) -> tuple[float, float]:
-    """Set the loads of the pieces at the surface, for a value of the line's unknown.
+    """Set the loads of the pieces at the surface, before a march.
+
+    Parameters
+    ----------
+    x : depth of the free end [m], or used fraction of a float's buoyancy
 
     Returns
     -------
-    Depth of the free end, and length of the line above the water there [m].
+    Depth of the free end [m], and length of the line above the surface [m].
     """
     work, loads, given = problem.work, problem.course.loads, problem.loads
     if work.left[CHANGED] > 0.0:
@@ -229,20 +249,28 @@ def changed(
 
 
 def coarse_about(problem: LineProblem, unknown: Unknown) -> About:
-    """Return the settings for marches with the coarse angle step, used to bracket a root."""
+    """Return the settings for marches with the coarse angle step, to bracket an equilibrium."""
     step = problem.limits.coarse_step
     return About(problem, unknown, step, CHOSEN, False, NOT_RECORDED)
 
 
 def coarse_miss(problem: LineProblem, unknown: Unknown, x: float) -> float:
-    """Return the miss [m] of a march with the coarse angle step."""
+    """Return the height error of the line's end in a march with the coarse angle step [m]."""
     return miss_at(coarse_about(problem, unknown), x)
 
 
 def coarse_root(
     problem: LineProblem, unknown: Unknown, a: float, miss_a: float, b: float, miss_b: float
 ) -> Root:
-    """Find a root of the coarse miss between a and b, to within about 1e-4 of the span."""
+    """Find an equilibrium by marches with the coarse angle step.
+
+    The accuracy is about 1e-4 of the span.
+
+    Parameters
+    ----------
+    a, b : limits of the depth of the free end, or of the used fraction of a float's buoyancy
+    miss_a, miss_b : height errors of the line's end at a and b [m]
+    """
     span = problem.limits.span
     small, linear = 1e-4 * span, unknown.sought == BELOW
     if linear:  # below the surface the miss is almost linear, so the last step needs no march
@@ -257,9 +285,9 @@ def coarse_root(
 
 
 def planned(problem: LineProblem, root: Root, step: float) -> Root:
-    """Choose the segments for an angle step, and estimate the root of the miss on these segments.
+    """Choose the segments for an angle step, and estimate the equilibrium on these segments.
 
-    The estimate starts from a coarse root. The line is not marched at the estimated root.
+    `root` is an approximate equilibrium. The line is not marched at the new estimate.
     """
     limits = problem.limits
     small, record = (ABOUT, OTHER) if limits.near > 0.0 else (WELL_KNOWN, NOT_RECORDED)
@@ -283,9 +311,10 @@ def segments_of(problem: LineProblem, cuts: int) -> int:
 
 
 def polish(problem: LineProblem, root: Root, cuts: int, record: int) -> Closed:
-    """Close the line on fixed segments, starting from a root found on other segments.
+    """Close a line on fixed segments, starting from an approximate equilibrium.
 
-    Floats above the float with the unknown buoyancy are first placed at the surface.
+    If several floats are at the surface, `root` is for the lowest of them. The used buoyancies of
+    the floats above are computed first.
     """
     unknown, shares = root.unknown, problem.work.shares
     if isnan(root.miss):
@@ -301,7 +330,7 @@ def polish(problem: LineProblem, root: Root, cuts: int, record: int) -> Closed:
 
 
 def close_near(problem: LineProblem, root: Root, cuts: int, record: int) -> Closed:
-    """Close a line, or a part of a line, on fixed segments near a known root."""
+    """Close a line, or a part of a line, on fixed segments near an approximate equilibrium."""
     limits = problem.limits
     small = 0.1 * limits.allowed
     if limits.near > 0.0:
@@ -343,15 +372,17 @@ def near_root(
     small: float,
     narrow: float,
 ) -> Root:
-    """Find the value of a line's unknown at which the line ends at its target, near a known value.
+    """Find the equilibrium of a line near an approximate equilibrium.
 
-    If the free end reaches the surface, the top float's used buoyancy becomes the unknown instead
-    of the depth, and vice versa. The last march is at the root found.
+    The unknown is the depth of the free end, or the used fraction of a float's buoyancy. If the
+    free end reaches the surface, the buoyancy of the top float becomes the unknown. If the whole
+    buoyancy of the top float is used, the depth becomes the unknown. The last march is at the
+    equilibrium.
 
     Parameters
     ----------
     step, cuts, given, record : as in `About`
-    small : miss at which the search ends [m]
+    small : height error at which the search ends [m]
     narrow : bracket width at which the search ends, as a fraction of the unknown's range
     """
     unknown, x, slope = root.unknown, root.x, root.slope

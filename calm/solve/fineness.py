@@ -10,8 +10,11 @@ from calm.solve.accuracy import Errors
 
 DEPTH_TARGET = 4e-5
 TENSION_TARGET = 1.6e-4
-"""Largest error estimates at an angle step of 1°, relative to the span and to the tension. Larger
-errors, which grow with the square of the angle step, reduce the step.
+"""Largest accepted error estimates if the angle step in the settings is 1°.
+
+DEPTH_TARGET is a fraction of the span, TENSION_TARGET a fraction of the tension. Both are
+proportional to the square of the angle step in the settings. Larger errors reduce the step of the
+next round.
 """
 MOST_ROUNDS = 6
 """Largest number of rounds, each with a coarse and a fine shape."""

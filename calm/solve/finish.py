@@ -52,8 +52,7 @@ _OF_PIECE = {
         "push_north",
     )
 }
-"""Names of the arrays of a `Line`, and the field of a march's load that corresponds to each array.
-"""
+"""Arrays of a `Line` with a force or drag of each piece, and the corresponding fields of `Load`."""
 
 
 def solution_of(

@@ -1,6 +1,7 @@
 """Fit of the length of a piece to a required depth.
 
-The depth is that of the top of a mooring in still water, or of a towed body.
+The required depth is the depth of the top of a mooring in still water, or the depth of a towed
+body.
 """
 
 from dataclasses import replace
@@ -132,8 +133,8 @@ def fit_tow_length(
     Raises
     ------
     NoEquilibrium
-        ``no-equilibrium`` if no length up to a thousand times the depth fits; otherwise as in
-        `solve_tow`, except ``above-surface`` and ``grounded``.
+        ``no-equilibrium`` if no length up to a thousand times the depth fits, or as in `solve_tow`;
+        ``not-converged`` as in `solve_tow`.
     """
     bottomless = replace(water, depth=inf)
     node = len(line.length) - 1 - piece

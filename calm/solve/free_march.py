@@ -120,7 +120,7 @@ class Rising:
 
     @cached_property
     def _tracks(self) -> tuple[Track, Track]:
-        """March inputs of the part marched from the upper end, and of the part from the lower."""
+        """Two tracks: the part of the line marched from the upper end, and the other part."""
         below = replace(self.line.reversed(), towed=True)
         return (
             Track.of(self.line).first_pieces(self._split),

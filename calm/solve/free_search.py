@@ -21,8 +21,9 @@ SLOWEST = 0.01
 COARSE = 4.0
 """Segment length of the first marches, in units of the final segment length."""
 NEAR, CLOSE = 1e-3, 1e-9
-"""Allowed imbalance of forces, as a fraction of the net weight: before and after the last choice of
-segments.
+"""Allowed imbalance of forces, as a fraction of the net weight of the line.
+
+NEAR applies to coarse segments, CLOSE to the final segments.
 """
 SHEARS = ((1.0,), (0.1, 0.25, 0.5, 0.75, 1.0))
 """Fractions of the current shear for which the motion is found in turn: the full shear at once or,
@@ -102,7 +103,10 @@ def plumb_speed(line: Line, water: Water, top: float) -> float:
     ]
 
     def lifted(_: None, squared: float) -> float:
-        """Return the vertical imbalance [N]; the squared speed has the sign of the velocity."""
+        """Return the sum of the vertical forces on the line [N].
+
+        `squared` is the square of the vertical speed, negative if the line sinks [m²/s²].
+        """
         drag = across.copy()
         for place, curve, reynolds in smooth:
             drag[place] *= curve.factor(reynolds * sqrt(abs(squared)))
@@ -153,7 +157,7 @@ _FOLLOWED = 8
 
 
 def _closed(rising: Rising, place: FreePlace, angle_step: float) -> tuple[FreePlace, Cuts] | None:
-    """Find the motion near a known motion, and its segments; None if the search fails."""
+    """Find the motion near a known motion. Return the motion and its segments, or None."""
     sheared = not rising.plumb
     # The depth of the lower end is an unknown of Newton's method only in shear, since the depth is
     # not continuous if a plumb line doubles back within a cable.
@@ -197,7 +201,7 @@ def _closed(rising: Rising, place: FreePlace, angle_step: float) -> tuple[FreePl
 _ROUNDS = 40
 _HALVINGS = 6
 _DIFFERENCE = 1e-5
-"""Step of the finite differences for the derivatives, in units of the unknowns."""
+"""Change of each scaled unknown for the finite differences."""
 
 System = Callable[[Floats], Floats]
 

@@ -9,8 +9,9 @@ from typing import Any
 DOUBLINGS = 10
 """Number of doubling steps of the search; the first step is 1/2¹⁰ of the range."""
 SIGNIFICANT = 6
-"""Significant digits to which an answer is rounded, except close to the start or if an exact answer
-is required.
+"""Number of significant digits to which an answer is rounded.
+
+Exact answers, and answers very close to the start, are not rounded.
 """
 
 _NARROW = 1e-10
@@ -85,7 +86,7 @@ class LeastChange:
         return not (any(step > noise for step in steps) and any(step < -noise for step in steps))
 
     def neighbours(self, x: float) -> tuple[float, float]:
-        """Return the nearest tried values below and above x; x itself replaces a missing value."""
+        """Return the nearest tried values below and above x, or x if there is no such value."""
         below = max((t for t in self.tried if t < x), default=x)
         above = min((t for t in self.tried if t > x), default=x)
         return below, above
@@ -193,8 +194,8 @@ def bracketed_root(
 
     Returns
     -------
-    Root, function value there, and slope across the last bracket. The function was last evaluated
-    at this root, unless a or b was already good enough.
+    Root, function value at the root, and slope across the last bracket. The last evaluation of the
+    function is at the root, or there is no evaluation if a or b is precise enough.
 
     Source: Chandrupatla, Advances in Engineering Software 28 (1997), 145-149.
     """

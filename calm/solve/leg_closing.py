@@ -34,29 +34,41 @@ from calm.solve.problem import CHOSEN, COARSE, FINE, HALVED
 from calm.solve.solution import FOUND, NO_SHAPE_NEAR
 
 MOST_STEPS, HALVINGS = 60, 9
-"""Largest number of Newton steps for a shape, and of halvings of a step that does not reduce the
-residual.
+"""Limits of Newton's method for a net.
+
+MOST_STEPS is the largest number of Newton steps. A Newton step that does not reduce the residual is
+halved up to HALVINGS times.
 """
 NEAR, CLOSED = 1e-4, 1e-10
-"""Allowed residual of lengths and forces, as a fraction of the longest leg and of a typical force:
-before the segments are fixed, and of a finished shape.
+"""Allowed residual of a net: NEAR while segments are still chosen, CLOSED for the final shape.
+
+The residual of a length is a fraction of the longest leg, and of a force, a fraction of a typical
+force.
 """
 CLOSED_FOR_SEGMENTS = 1e-7
-"""Limit for the shape in which the segments are chosen, stricter than `NEAR`. The segments then
-depend on the net alone, not on the path of the search.
+"""Allowed residual of the shape for which the final segments are chosen.
+
+This limit is stricter than `NEAR`, so that the segments depend on the net alone, not on the path of
+the search.
 """
 MOST_LEFT = 10.0
 """Largest accepted residual, as a multiple of `enough`, if no step reduces the residual further."""
 KEPT_SLOPES_REDUCTION = 0.25
-"""Factor by which a step must reduce the sum of squares, so that the next step uses the same
-Jacobian.
+"""Ratio of the squared residual after a Newton step to the squared residual before the step.
+
+If the ratio is larger than this limit, the Jacobian is computed again.
 """
 FLATTEST, MOST_HALVED = -1e-3, 100
-"""Flattest scaled slope, and largest number of steps, of the secant method for a single unknown."""
+"""Limits of the secant method for a net with a single unknown.
+
+FLATTEST is the assumed slope of the scaled residual if the secant is flatter. MOST_HALVED is the
+largest number of steps.
+"""
 SINGULAR = 1e-14
 """Scaled pivot below which the Newton step leaves an unknown unchanged."""
 NEGLIGIBLE_PULL = 1e-5
-"""Largest horizontal pull at a touchdown that counts as none, as a fraction of the weight of a leg.
+"""Horizontal pull at a touchdown that is regarded as zero, as a fraction of the weight of a leg.
+
 The limit exceeds the drag of the weak current that is added to still water.
 """
 NEEDS_ROOM = -1
@@ -70,8 +82,8 @@ DEPTH_ERROR, TENSION_ERROR = range(2)
 def newton_step(net: NetProblem, found: Sequence[float]) -> float:
     """Solve the linear equations of a Newton step, and return the size of the step.
 
-    The step is written to `net.update`, divided by the scale of each unknown. An unknown without a
-    pivot keeps its value.
+    The step is written to `net.update`, divided by the scale of each unknown. The step is 0 for an
+    unknown that the equations do not determine.
     """
     size, matrix, row = len(found), net.matrix, 0
     for r in range(size):
@@ -150,7 +162,7 @@ def close_net(
 ) -> int:
     """Close a net by Newton's method; return `FOUND`, `NO_SHAPE_NEAR` or `NEEDS_ROOM`.
 
-    The last march is the march with the unknowns found.
+    The last march of each leg is for the final unknowns, if the net is closed.
 
     Parameters
     ----------

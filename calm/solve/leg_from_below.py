@@ -70,8 +70,8 @@ NO_PULL = 1e-9
 def course_from_below(course: Course) -> Course:
     """Return the course of a leg in reverse order, for an upward march.
 
-    The new course begins with a point load for the force at the lower end, and has none at the
-    upper end. Pieces keep their numbers.
+    The new course begins with a point load, which stands for the force on the lower end of the
+    leg. There is no point load at the upper end. Pieces keep their numbers.
     """
     stages, loads = [course.stages[0]], [course.loads[0]]
     cables: list[CableStretch] = []
@@ -295,7 +295,7 @@ def march_suspended(
 
 
 def turn_round(record: Record, nodes: int) -> None:
-    """Reverse the record of an upward march, which then begins with the pull at the upper end."""
+    """Reverse the record of an upward march, so that the record begins at the upper end."""
     for k in range(6):
         a, b = 1, nodes - 1
         column = record[k]
@@ -322,14 +322,15 @@ def turn_round(record: Record, nodes: int) -> None:
 
 @within
 def write_anchor_miss(net: NetProblem, i: int, x: Sequence[float], loose: float) -> None:
-    """Write the horizontal miss of an anchored leg, and the error of the height of its lower end.
+    """Write the residuals of an anchored leg to `net.passed`.
 
-    Let d be the vector from touchdown to anchor, r the length on the seabed, and h the pull. The
-    miss is zero if d is the projection of d + ρh on the disc of radius r, for any ρ > 0 (contact
-    condition of Alart and Curnier). The leg is then taut (|d| = r, d parallel to h) or slack (|d| <
-    r, h = 0).
+    Results 0 and 1 are the horizontal position error at the anchor. Let d be the vector from
+    touchdown to anchor, r the length on the seabed, h the horizontal pull, and ρ > 0 any factor.
+    The error is zero if the projection of d + ρh on the disc of radius r is d (contact condition of
+    Alart and Curnier). Such a leg is either taut (|d| = r, d parallel to h) or slack (|d| < r,
+    h = 0).
 
-    `loose` is as in `Marching`.
+    Result 6 is the height error of the lower end of the leg. `loose` is as in `Marching`.
     """
     leg, state, passed, bed = net.legs[i], net.state[i], net.passed[i], bed_of(net, i)
     at, reach = leg.first, state[LIES]

@@ -52,7 +52,8 @@ class LegEnd:
     place : east, north and up position of a held end [m]
     seabed : height of the seabed below an anchor [m]; -inf without an anchor
     deeper : slope of the seabed below an anchor, as depth increase per metre east and north
-    past : current at a held end that sets the strumming frequency of the leg [m/s]
+    past : current at this end [m/s], if the end is held and vortex shedding at this end sets the
+        strumming frequency of the leg
     """
 
     node: int = -1
@@ -111,7 +112,10 @@ class LaidLeg:
 
     @property
     def shedding(self) -> tuple[float, float, float, float]:
-        """Strouhal number over diameter [1/m], and current [m/s], at the end of the march."""
+        """Vortex shedding at the end of the march: St/D [1/m], and the current [m/s].
+
+        St is the Strouhal number, and D the cable diameter.
+        """
         model, diameter, past = self.line.strumming, self.line.diameter, self.ends[1].past
         if model is None or past is None or not diameter.any():
             return 0.0, 0.0, 0.0, 0.0
@@ -155,9 +159,10 @@ class LaidLeg:
 
     @property
     def surface_range(self) -> float:
-        """Range of the unknown [m] that represents the whole buoyancy of a surface float.
+        """Scale that converts the buoyancy fraction of a surface float to a length [m].
 
-        The range equals the leg's length, but is at least 0.5 m.
+        Newton's method uses this length as the unknown. The scale equals the length of the leg, but
+        is at least 0.5 m.
         """
         # so long that a Newton step does not skip the range
         return max(float(self.line.length.sum()), 0.5)

@@ -41,12 +41,14 @@ from calm.solve.problem import BELOW, HALVED, OTHER, LineProblem, Unknown
 SLOPE_STEP = 1e-6
 """Relative change of an unknown for the finite differences of the slopes."""
 LEAST_PULL = 1e-3
-"""Smallest force scale of a leg, as a fraction of its weight; if its pull is larger, this pull is
-the scale.
-"""
+"""Smallest scale of the unknown forces of a leg, as a fraction of the weight of the leg."""
 ROUGHLY_SETTLED, SETTLED, MOST_TURNS, GENTLEST = 1e-2, 1e-9, 50, -0.3
-"""Parameters of the strumming frequency: allowed relative error while segments are chosen, and on
-fixed segments; largest number of marches of a leg; smallest slope of the secants.
+"""Parameters of the search for the strumming frequency of a leg.
+
+- ROUGHLY_SETTLED: allowed relative error of the frequency while segments are chosen
+- SETTLED: allowed relative error of the frequency on fixed segments
+- MOST_TURNS: largest number of iterations
+- GENTLEST: flattest slope of the secants
 """
 
 
@@ -154,9 +156,10 @@ def shed_by(leg: LegRow, passed: Sequence[float]) -> float:
 
 
 def row_of(net: NetProblem, i: int, k: int) -> int:
-    """Return the row of the residual to which result k of a leg's march is added, or -1 for none.
+    """Return the row of the residual that contains result k of the march of leg i, or -1.
 
-    The results are listed at `calm.solve.leg_numbers.OUT`.
+    The results are listed at `calm.solve.leg_numbers.OUT`. The value -1 means that no row contains
+    the result.
     """
     leg = net.legs[i]
     pulled = leg.own > 1

@@ -52,7 +52,8 @@ OF_LEG = 21
 OUT = 7
 """Number of results of a march, which are the entries of a row of `passed`.
 
-- 0 and 1: distance east and north, or the miss of an anchored leg
+- 0 and 1: for an anchored leg, horizontal position error at the anchor; for other legs, horizontal
+  distance from the start to the end of the march (east, north)
 - 2: height of the end of the march
 - 3 to 5: force at the end of the march
 - 6: error of the height at which an anchored leg begins on a sloping seabed
@@ -74,9 +75,9 @@ class LegRow(NamedTuple):
     longest : longest segment at an angle step of 1° [m]
     surface_range, highest, weight : as in `LaidLeg`
     rides : as in `Limits`
-    sheds : Strouhal number over diameter at the end that sets the strumming frequency [1/m]; 0
+    sheds : St/D at the end of the march, with Strouhal number St and cable diameter D [1/m]; 0
         without strumming
-    past_east, past_north, past_up : current at that end [m/s]
+    past_east, past_north, past_up : current at the end of the march [m/s]
     surfacing, rows : numbers of buoyant pieces, and of rows of the hull table
     landing : as in `Course`
     """
@@ -118,8 +119,10 @@ class NetProblem(NamedTuple):
     held : (·, 6) positions of each leg's held ends, at the start and the end of the march [m]
     state : (·, `OF_LEG`) state of each leg after its last march
     passed : (·, `OUT`) results of each leg's last march
-    found, kept : residual of the last march and of the best unknowns so far, both divided by `rows`
-    slopes, update : Jacobian of `found`, and Newton step, for the unknowns divided by `scale`
+    found : residual of the last march, divided by `rows`
+    kept : residual of the best unknowns so far, divided by `rows`
+    slopes : Jacobian, the derivatives of `found` with respect to the unknowns divided by `scale`
+    update : Newton step of the unknowns divided by `scale`
     coarse, better : unknowns on coarse segments, and extrapolated unknowns
     scale, rows : scales of the unknowns and of the residual
     errors : largest errors of depths [m] and of tensions [N]

@@ -29,9 +29,15 @@ from calm.solve.solution import (
 MOST_BETWEEN = 6
 """Largest number of marches to find two shapes that are close enough for linear interpolation."""
 LINEAR = 4e-7
-"""Largest product of the misses of two shapes for linear interpolation, in squared spans."""
+"""Largest product of the height errors of two shapes, in squared spans.
+
+If the product is larger, linear interpolation between the shapes is not accurate enough.
+"""
 FAR = 3e-4
-"""Largest miss on halved segments for linear interpolation, as a fraction of the span."""
+"""Largest height error of a line on halved segments, as a fraction of the span.
+
+If the error is larger, the shape is not corrected by linear interpolation.
+"""
 COARSE_REJECTION_DEPTH = 0.01
 """Depth below the seabed, as a fraction of the water depth, at which a line is rejected already on
 coarse segments.
@@ -43,11 +49,12 @@ class FoundShape(NamedTuple):
 
     Attributes
     ----------
-    closed : outcome, and size of the shape in the record `FINE`. From column `BETTER` on, the
-        record holds the extrapolated shape
-    share, grounded : extrapolated value of the line's unknown, and length on the seabed [m]
-    closure, moment : residuals found by the audit
-    other : another equilibrium
+    closed : outcome, and number of nodes. The shape is in the record `FINE`; the columns from
+        `BETTER` on hold the extrapolated shape
+    share : extrapolated depth of the free end [m], or used fraction of a float's buoyancy
+    grounded : extrapolated length on the seabed [m]
+    closure, moment : relative force imbalance, and moment residual [rad], from the audit
+    other : a second equilibrium of the line
     """
 
     closed: Closed
@@ -74,7 +81,7 @@ def refused(ending: int, value: float, piece: int, root: Root) -> FoundShape:
 
 
 def settle_line(problem: LineProblem, root: Root, hangs: bool) -> FoundShape:
-    """Close a line near a coarse root, on sufficiently short segments.
+    """Close a line near an approximate equilibrium, on sufficiently short segments.
 
     The shape is written to the record `FINE`, without an audit.
 
@@ -132,9 +139,9 @@ def polish_hanging(problem: LineProblem, root: Root, cuts: int, record: int, han
 
 
 def refused_far_below(problem: LineProblem, closed: Closed, record: int, hangs: bool) -> Closed:
-    """Return a closed line, but reject a line that is far below the seabed.
+    """Return `closed`, or a rejection if the line is far below the seabed.
 
-    A line is rejected only if it must stay clear of the seabed (`hangs`).
+    Only a line that must stay clear of the seabed (`hangs`) is rejected.
     """
     if not hangs or closed.ending != FOUND:
         return closed
@@ -205,13 +212,15 @@ def closed_between(problem: LineProblem, root: Root) -> tuple[Closed, Closed]:
 
 
 def move_shapes(problem: LineProblem, nodes: int, closing: float, halved: float) -> int:
-    """Move the shapes `COARSE` and `FINE` by multiples of the change from `OTHER` to `COARSE`.
+    """Correct the shapes `COARSE` and `FINE` by linear interpolation.
 
-    Return the number of nodes of the fine shape.
+    The change from shape `OTHER` to shape `COARSE` is multiplied by a factor, and added to the
+    nodes. Return the number of nodes of the fine shape.
 
     Parameters
     ----------
-    closing, halved : multiples for `COARSE` and for `FINE`
+    closing : factor for `COARSE`
+    halved : factor for `FINE`
     """
     records, same = problem.work.records, 0
     before, coarse, fine = records[OTHER], records[COARSE], records[FINE]

@@ -49,21 +49,27 @@ whose top is in a weak current may miss its anchor, but reach the anchor if its 
 deeper, in a stronger current.
 """
 DIP_SAMPLES = 8
-"""Number of depths tried between three samples, to detect a change of sign of the miss."""
+"""Number of depths tried between three samples, to detect a change of sign of the height error."""
 GOLDEN = 0.381966
 ROUNDING = 1e-12
 """Relative rounding error of the current; a smaller growth of the current is ignored."""
 SHARES = (0.0, 0.4, 0.7, 0.85, 0.94, 1.0 - AWASH, 0.995)
-"""Used fractions of buoyancy for which an immersed float is tried at the surface."""
+"""Used buoyancy fractions at which a line with its float at the surface is marched.
+
+These marches search for an equilibrium at the surface, if the line also has an equilibrium with the
+float immersed.
+"""
 SHARE_STEPS, CURRENT_STEPS = 8, 10
-"""Number of steps of the used buoyancy in the search for several roots, and number of steps in
-which the current is raised from zero to select a root.
+"""Numbers of steps in the search for several equilibria of a line at the surface.
+
+SHARE_STEPS is the number of steps of the used buoyancy. The current is raised from zero in
+CURRENT_STEPS steps, to select one of the equilibria.
 """
 WEAK = 0.1
 """Speed, as a fraction of the maximum, below which a change of current direction is ignored."""
 
 Sample = tuple[float, float]
-"""A value of a line's unknown, and the miss at this value [m]."""
+"""A depth of the free end, and the height error of the line's end for this depth [m]."""
 
 
 class CoarseRoots(NamedTuple):
@@ -71,9 +77,10 @@ class CoarseRoots(NamedTuple):
 
     Attributes
     ----------
-    ending, value : FOUND, or the reason for a failure, and the number quoted with this reason
-    root : root of the highest equilibrium
-    other : another root; not `found` if there is none
+    ending : FOUND, or the code of the reason for a failure
+    value : number for the error message
+    root : the highest equilibrium
+    other : a second equilibrium, if `other.found` is true
     """
 
     ending: int
@@ -85,12 +92,13 @@ class CoarseRoots(NamedTuple):
 def locate(problem: LineProblem, lands: bool, first: bool) -> CoarseRoots:
     """Find the approximate equilibria of a line, either clear of the seabed or with a touchdown.
 
-    Unstable equilibria, at which the miss grows with depth, are ignored.
+    An equilibrium is unstable, and ignored, if the height error grows with the depth of the free
+    end.
 
     Parameters
     ----------
     lands : whether the line has a touchdown
-    first : whether to stop at the highest one
+    first : whether to stop as soon as the highest equilibrium is found
     """
     unknown = whole_line(problem, lands)
     none = Root(False, unknown, nan, nan, nan)
@@ -154,7 +162,10 @@ def stopped(problem: LineProblem, none: Root) -> CoarseRoots:
 
 
 def sample(problem: LineProblem, unknown: Unknown, count: int, depth: float) -> int:
-    """Add the miss for a depth of the free end to the samples, and return the number of samples."""
+    """March the line for a depth of the free end, and add the height error to the samples.
+
+    Return the new number of samples.
+    """
     miss = coarse_miss(problem, unknown, depth)
     samples = problem.work.samples
     samples[0][count], samples[1][count] = depth, miss
@@ -162,8 +173,9 @@ def sample(problem: LineProblem, unknown: Unknown, count: int, depth: float) -> 
 
 
 def samples_below(problem: LineProblem, unknown: Unknown, count: int) -> int:
-    """Sample the miss at increasing depths of the free end, to separate the equilibria.
+    """March the line for increasing depths of the free end, to separate the equilibria.
 
+    The depths and the height errors of the line's end are added to the samples.
     Return the number of samples, or 0 if a march fails.
     """
     limits = problem.limits
@@ -202,10 +214,10 @@ def samples_below(problem: LineProblem, unknown: Unknown, count: int) -> int:
 def dip(
     problem: LineProblem, unknown: Unknown, before: Sample, here: Sample, after: Sample
 ) -> Sample:
-    """Search for a change of sign of the miss around the middle of three samples.
+    """Search for a change of sign of the height error near the middle one of three samples.
 
-    The search runs only if the absolute miss is smallest in the middle. Return a sample of opposite
-    sign, else the middle sample.
+    The search runs only if the middle sample has the smallest absolute height error. Return a
+    sample of the opposite sign, or the middle sample if there is none.
     """
     sign = 1.0 if here[1] > 0.0 else -1.0
     if not 0.0 < sign * here[1] < min(sign * before[1], sign * after[1]):
@@ -229,8 +241,9 @@ def dip(
 def growth_below(sea: Sea, depth: float) -> float:
     """Return the relative growth rate of the current below a given depth [1/m].
 
-    The rate is the largest growth per metre, divided by the maximum speed. If the current turns,
-    its component across the current above counts as growth.
+    The rate is the largest growth per metre, divided by the maximum speed. Two successive levels
+    are compared. If the current turns, its component normal to the current at the upper level
+    counts as growth.
     """
     greatest = rise = 0.0
     last = len(sea.intervals) - 1
@@ -305,13 +318,14 @@ def in_sea(problem: LineProblem, sea: Sea) -> LineProblem:
 
 
 def awash(problem: LineProblem, unknown: Unknown, immersed: float) -> Root:
-    """Find the highest equilibrium at the surface, for a line that also has a submerged one.
+    """Find the highest equilibrium with the top float at the surface.
 
-    If a march fails, the root is `found` but its miss is NaN.
+    The line also has an equilibrium with this float immersed. If a march fails, `found` of the
+    result is true, and `miss` is NaN.
 
     Parameters
     ----------
-    immersed : miss with the free end at the surface and all buoyancy in use [m], at least 0
+    immersed : height error with the free end at the surface and all buoyancy in use [m], at least 0
     """
     none = Root(False, unknown, nan, nan, nan)
     if not problem.limits.rides or len(problem.surfacing) == 0:
@@ -340,12 +354,12 @@ def awash(problem: LineProblem, unknown: Unknown, immersed: float) -> Root:
 def surface_root(problem: LineProblem, unknown: Unknown, deep: float) -> CoarseRoots:
     """Find the equilibrium of a line with one or several floats at the surface.
 
-    The root is the used fraction of the lowest surface float's buoyancy. A single float rides at
+    The unknown is the used fraction of the lowest surface float's buoyancy. A single float rides at
     its draft; several floats are assumed just below the surface.
 
     Parameters
     ----------
-    deep : miss with the free end at the surface and all buoyancy in use [m], below 0
+    deep : height error with the free end at the surface and all buoyancy in use [m], below 0
     """
     limits = problem.limits
     none = Root(False, unknown, nan, nan, nan)
@@ -418,8 +432,8 @@ def turns_back(sea: Sea) -> bool:
 def roots_afloat(problem: LineProblem, unknown: Unknown) -> tuple[Root, Root]:
     """Find up to two stable equilibria of a line with its top float at the surface.
 
-    The roots are used fractions of the float's buoyancy. The first root is reached as the current
-    rises from zero; the second may not be `found`.
+    The unknown is the used fraction of the float's buoyancy. The line reaches the first equilibrium
+    as the current rises from zero. The second equilibrium may not be `found`.
     """
     lowest, highest = outer_roots(problem, unknown)
     if isnan(lowest.miss) or lowest.x == highest.x:
@@ -445,8 +459,8 @@ def roots_afloat(problem: LineProblem, unknown: Unknown) -> tuple[Root, Root]:
 def outer_roots(problem: LineProblem, unknown: Unknown) -> tuple[Root, Root]:
     """Find the stable equilibria with the smallest and the largest used buoyancy fraction.
 
-    An equilibrium is stable if the miss falls as more buoyancy is used. Without a stable
-    equilibrium, the roots are not `found` and their miss is NaN.
+    An equilibrium is stable if the height error falls as more buoyancy is used. Without a stable
+    equilibrium, `found` of the results is false, and `miss` is NaN.
     """
     lowest = highest = Root(False, unknown, nan, nan, nan)
     share, high = 0.0, coarse_miss(problem, unknown, 0.0)
@@ -461,13 +475,19 @@ def outer_roots(problem: LineProblem, unknown: Unknown) -> tuple[Root, Root]:
 
 
 def height_at(problem: LineProblem, root: Root, lower: int) -> float:
-    """Return the height [m] of the top of float number `lower` above the surface, at a root."""
+    """Return the height of the top of a given float above the surface, in an equilibrium [m].
+
+    `lower` is the index of the float in `problem.surfacing`.
+    """
     miss = coarse_miss(problem, down_to(problem, root.unknown, lower), root.x)
     return nan if isnan(miss) else problem.work.left[Z]
 
 
 def surfaced_root(problem: LineProblem, unknown: Unknown, lower: int) -> Root:
-    """Find the used fraction of a float's buoyancy that brings the next float to the surface."""
+    """Find the used buoyancy of a surface float for which the next float reaches the surface.
+
+    `lower` is the index of the next float in `problem.surfacing`.
+    """
     part = down_to(problem, unknown, lower)
     loaded, unloaded = coarse_miss(problem, part, 1.0), coarse_miss(problem, part, 0.0)
     if isnan(loaded) or isnan(unloaded):

@@ -128,8 +128,14 @@ def run_search(problem: LineProblem, referee: Referee) -> int:
 ENDING, VALUE, PIECE, GOAL, SOUGHT, RIDES, LANDS, STAGES, UNKNOWN_VALUE, MISS, SLOPE = range(11)
 NODES, HANGING, LANDED, GROUNDED, SEGMENTS, FIRST_ERROR = range(11, 17)
 CLOSURE, MOMENT, SHARE_IN_USE, LIES, FIRST_OTHER = range(22, 27)
-"""Indices into the result array of a search. The errors begin at `FIRST_ERROR`, another equilibrium
-at `FIRST_OTHER`.
+"""Indices into the result array of a search, which holds the fields of a `FoundShape`.
+
+- CLOSURE, MOMENT: `closure` and `moment`
+- SHARE_IN_USE: `share`
+- LIES: `grounded`
+- FIRST_OTHER: first of the five values of `other`
+
+The five values of `errors` begin at `FIRST_ERROR`.
 """
 
 
@@ -249,7 +255,7 @@ class Nearby:
         Raises
         ------
         NoEquilibrium
-            No shape passes every check, or only one of the two lines has a touchdown.
+            No shape passes every check, or the line gains or loses a touchdown.
         """
         problem, closed = self._closed(line, water)
         base, compiled = self.solution, self._compiled
@@ -282,7 +288,7 @@ class Nearby:
         return problem, closed
 
     def _moved(self, water: Water, problem: LineProblem) -> Root:
-        """Return the approximate root of the original line in water of another depth."""
+        """Return the equilibrium of the original line, shifted to water of another depth."""
         root, deeper = self._root, water.depth - self._water.depth
         was, x = root.unknown, root.x
         unknown = Unknown(was.goal - deeper, was.sought, was.rides, was.lands, was.stages)
@@ -313,7 +319,7 @@ def close_again(problem: LineProblem, root: Root) -> Closed:
 
 
 def _used(problem: LineProblem, closed: Closed, line: Line) -> float:
-    """Return the used fraction of the surface floats' buoyancy (at the reference density)."""
+    """Return the used fraction of the surface floats' buoyancy in reference water."""
     sought = closed.root.unknown.sought
     if sought == BELOW:
         return 1.0

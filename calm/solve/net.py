@@ -40,8 +40,10 @@ from calm.solve.two_speeds import CompiledPart, count_lines, runs_compiled
 MORE_ROOM = 8
 Answer = TypeVar("Answer")
 LOOSE, TIGHTEST, FALL = 1e-2, 1e-8, 0.1
-"""First and last pull of slack legs, as fractions of their scales, and the factor between
-successive pulls. Used in the search for a net that is held by slack legs alone.
+"""Small pulls of slack legs towards their anchors, for a net that is held by slack legs alone.
+
+LOOSE is the first pull, and TIGHTEST the last, as fractions of the force scale of a leg. FALL is
+the ratio of a pull to the preceding pull.
 """
 
 

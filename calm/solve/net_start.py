@@ -152,7 +152,7 @@ class _Lumps:
             self.place += speed
 
     def pulls(self) -> Floats:
-        """Return the force (m, 3) of every spring on its first lump [N]."""
+        """Return the force (m, 3) of every spring on the first of its two lumps [N]."""
         a, b = self.springs.T
         vector = self.place[b] - self.place[a]
         size = np.maximum(np.linalg.norm(vector, axis=1), 1e-12)

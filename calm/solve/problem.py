@@ -23,7 +23,7 @@ from calm.solve.solution import (
 )
 
 COARSE_STEP = np.radians(4.0).item()
-"""Angle step of the coarse marches that search for the neighbourhood of a root [rad]."""
+"""Angle step of the coarse marches that search for approximate equilibria [rad]."""
 REACH, ROUGH_REACH = 0.01, 0.013
 """Longest segment at an angle step of 1°, as a fraction of the span: for a single line, and in a
 batch.
@@ -46,7 +46,7 @@ SHARE_TOLERANCE = 1e-9
 ROUGH, ROUGH_SHARE, ROUGHLY_NEAR = 1e-5, 1e-7, 2e-6
 """Tolerances in a batch.
 
-- ROUGH: allowed miss, as a fraction of the water depth
+- ROUGH: allowed height error of the line's end, as a fraction of the water depth
 - ROUGH_SHARE: tolerance of the used fraction of buoyancy
 - ROUGHLY_NEAR: distance of a load from its water sample, as a fraction of the water depth
 """
@@ -55,8 +55,11 @@ FOUND_SIZE = 32
 """Length of the array for the results of a search."""
 
 COARSE, FINE, KEPT, OTHER = range(4)
-"""Records of shapes: on the segments chosen by the march, on halved segments, and two that are kept
-during another search.
+"""Indices of the records of shapes.
+
+- COARSE: shape on the segments chosen by the march
+- FINE: shape on the halved segments
+- KEPT, OTHER: copies of shapes, kept during another search
 """
 CHOSEN, HALVED = range(2)
 """Segment lists: chosen by the march, and halved."""
@@ -77,9 +80,10 @@ class BuoyantPiece(NamedTuple):
     ----------
     load, stage : index of the piece's load, and of the piece's stage, in the `Course`
     rigid_above : length of the rigid pieces directly above this piece [m]
-    upto : length of the line from its top to the lower end of the piece [m]
+    upto : length of the line from the free end to the lower end of this piece [m]
     surface_lift : net buoyancy in water at the surface [N]
-    least : smallest fraction of the buoyancy that holds the line below upright in still water [-]
+    least : smallest used fraction of the buoyancy for which the line below this piece is upright in
+        still water [-]
     """
 
     piece: int
@@ -101,7 +105,7 @@ class Limits(NamedTuple):
     depth, anchor_height : water depth, and height of the anchor's top above the seabed [m]
     angle_step, coarse_step : largest rotation of a segment in the final shape, and in the search
         [rad]
-    allowed : largest allowed miss of a solution (see `calm.solve.closing`) [m]
+    allowed : largest allowed height error of the line's end in a solution [m]
     near : as in `MarchSettings`; not 0 in a batch, which is not audited
     length, standing : unstretched length, and length upright in still water [m]
     lift : net buoyancy of the whole line [N]
@@ -133,13 +137,15 @@ class SearchArrays(NamedTuple):
 
     Attributes
     ----------
-    left : results of the last march (see `calm.physics.passing`), then those at `MARCHES` to `LAST`
+    left : results of the last march (see `calm.physics.passing`), followed by three values with the
+        indices `MARCHES` to `LAST`
     chosen : unstretched lengths of the segments chosen by the march [m]
     counts : number of segments in each cable
     records : shapes of the line, indexed by `COARSE` to `OTHER`
-    shares : rows with a value for each surface float: used buoyancy fraction, slope of the miss
-        with respect to this fraction, and used fractions in the records `KEPT` and `OTHER`
-    samples : sampled values of the line's unknown, and the misses at these values
+    shares : four rows with a value for each surface float. Row 0 holds the used buoyancy fraction,
+        row 1 the derivative of the height error with respect to this fraction. Rows `KEPT` and
+        `OTHER` hold the used fractions of the shapes in these records
+    samples : depths of the free end, and height errors of the line's end for these depths [m]
     elements : (3, n) loads of every element
     found : results, see `calm.solve.mooring.write_found`
     """
@@ -180,13 +186,13 @@ class LineProblem(NamedTuple):
 
 
 class Unknown(NamedTuple):
-    """Unknown that closes a line: depth of its free end, or used fraction of a float's buoyancy.
+    """Unknown of a line: depth of its free end, or used fraction of a float's buoyancy.
 
     Attributes
     ----------
     goal : height above the surface at which the line must end [m]
-    sought : float with the unknown fraction, the lowest at the surface; `BELOW` if the depth is
-        unknown
+    sought : index of the float with the unknown buoyancy fraction, which is the lowest float at the
+        surface; `BELOW` if the depth of the free end is unknown
     rides : whether the float rides at its draft; otherwise it is just below the surface
     lands : whether the line may have a touchdown
     stages : number of stages to march

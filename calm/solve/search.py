@@ -52,18 +52,24 @@ from calm.solve.starts import is_highest, start_of
 LARGEST_CLOSURE = 1e-6
 LARGEST_MOMENT = 1e-8
 UNSEEN = 1e-9
-"""Error, as a fraction of the span and of the largest force, that the comparison of two step sizes
-cannot reveal: rounding, the tolerance of the used buoyancy, and nodes slightly off their level.
+"""Error that a comparison of coarse and halved segments cannot reveal.
+
+The error is a fraction of the span or of the largest force. It allows for rounding, for the
+tolerance of the used buoyancy, and for nodes slightly above or below their level of the water
+profile.
 """
 SHORT_LANDED_LENGTH = 4.0
-"""Longest part on the seabed, in anchor heights, for which an equilibrium without touchdown takes
-precedence. With more line on the seabed, the hanging equilibrium is used only if it is higher.
+"""Longest part on the seabed, in anchor heights, if a shape without touchdown is preferred.
+
+If more of the line lies on the seabed, the shape without touchdown is used only if its free end is
+higher.
 """
 LEAST_SHARE_DIFFERENCE = 1e-3
 """Smallest difference in used buoyancy between two distinct equilibria of a surface float."""
 CHECKED_LANDED_LENGTH = 20.0
-"""Longest part on the seabed, in anchor heights, for which a hanging equilibrium is also sought.
-The second equilibrium is then reported.
+"""Longest part on the seabed, in anchor heights, for which a second equilibrium is sought.
+
+The second equilibrium is without touchdown, and is also reported.
 """
 
 
@@ -83,7 +89,10 @@ class Referee(NamedTuple):
 
 
 def find_shape(problem: LineProblem, referee: Referee) -> FoundShape:
-    """Find the shape of a line clear of the seabed or with a touchdown, the likelier kind first."""
+    """Find the shape of a line, either clear of the seabed or with a touchdown.
+
+    If the line is longer than the water depth, a shape with a touchdown is tried first.
+    """
     limits = problem.limits
     may_land = problem.course.landing < len(problem.course.stages)
     lands_first = may_land and limits.length > limits.depth
@@ -107,8 +116,8 @@ def find_shape(problem: LineProblem, referee: Referee) -> FoundShape:
 def rising(problem: LineProblem, referee: Referee) -> FoundShape:
     """Find the shape of a line that may touch the seabed but clearly rises from its anchor.
 
-    The line belongs to a batch. A line that descends anywhere is rejected, since such a line could
-    also lie on the seabed.
+    The line belongs to a batch. If its last element does not rise from the anchor, the line could
+    also lie on the seabed, and is rejected.
     """
     lying, start = start_of(problem, True), start_of(problem, False)
     found = refused(NO_SHAPE_NEAR, 0.0, -1, start)
@@ -149,11 +158,11 @@ def other_of(problem: LineProblem, found: FoundShape) -> OtherEquilibrium:
 
 
 def highest(problem: LineProblem, referee: Referee, lands: bool) -> FoundShape:
-    """Find the highest shape of one kind, and attach the deepest shape if it differs.
+    """Find the highest shape of a line, and attach a second equilibrium if there is one.
 
     Parameters
     ----------
-    lands : whether the shapes have a touchdown; otherwise they are clear of the seabed
+    lands : whether to search for shapes with a touchdown, instead of shapes clear of the seabed
     """
     if not lands and problem.limits.lift <= 0.0:
         nowhere = Root(False, whole_line(problem, lands), nan, nan, nan)
@@ -310,7 +319,7 @@ def residuals(
 
 
 def ending_of_audit(off: float, moment: float) -> tuple[int, float]:
-    """Return the outcome of the audit, and the residual that exceeds its limit, if any (else 0)."""
+    """Return the outcome of the audit, and the residual that is too large (0 if none is)."""
     if not off <= LARGEST_CLOSURE:
         return NOT_CLOSED, off
     if not moment <= LARGEST_MOMENT:
@@ -319,7 +328,10 @@ def ending_of_audit(off: float, moment: float) -> tuple[int, float]:
 
 
 def stated_errors(problem: LineProblem, found: FoundShape) -> Errors:
-    """Return error estimates that include the errors hidden from a comparison of two step sizes."""
+    """Return the error estimates of a shape, increased by errors that they do not include.
+
+    The added errors are the height error of the line's end, and `UNSEEN`.
+    """
     closed, span, errors = found.closed, problem.limits.span, found.errors
     unclosed = abs(closed.root.miss) / span + UNSEEN
     record, greatest = problem.work.records[FINE], 0.0

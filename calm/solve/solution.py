@@ -15,7 +15,7 @@ from calm.physics.line import Floats, Integers, Line, Trace, Water, once_at_rest
 from calm.physics.seawater import REFERENCE_DENSITY
 
 LOOSEST_TOLERANCE = 2e-4
-"""Largest miss, as a fraction of the water depth, at which a solution is accepted."""
+"""Largest accepted height error of the line's end, as a fraction of the water depth."""
 
 
 @dataclass(frozen=True)
@@ -300,8 +300,8 @@ def support_of(lift: Floats, at_rest: bool) -> tuple[int, int, float]:
 
     Returns
     -------
-    `SUPPORTED`, `TOO_HEAVY` or `FOLDS`; piece below which support ends, or -1; missing buoyancy
-    [N].
+    `SUPPORTED`, `TOO_HEAVY` or `FOLDS`; index of the piece below which the line is not held up, or
+    -1; missing buoyancy above this point [N].
     """
     lifts = lift.tolist()
     above = list(accumulate(lifts))

@@ -18,31 +18,37 @@ IMMERSION_SHARE = 0.97
 equilibrium.
 """
 DROPS = 3
-"""Number of iterations to find the current that acts on a line after its knockdown."""
+"""Largest number of iterations for the depth of the free end after knockdown.
+
+The current that acts on the line depends on this depth.
+"""
 LEAN_ROW = 6
-"""Row of the knockdowns computed by `lean_of`."""
+"""Row of `LineProblem.starts` with the knockdowns from `lean_of`."""
 LOOKED_AT, SURE = 6, 0.3
-"""Parameters of the test for a lower equilibrium: number of depths, and smallest fraction of the
-remaining knockdown.
+"""Parameters of the test for a higher equilibrium (`is_highest`).
+
+LOOKED_AT is the number of shallower free-end depths for which the knockdown is estimated. The
+estimate must exceed the knockdown at that depth by a fraction of the distance to the equilibrium.
+SURE is this fraction.
 """
 LEAST_CURRENT_GROWTH = 0.25
-"""Growth of the current over the largest knockdown of a line, above which the line is tested for a
-lower equilibrium.
+"""Relative growth of the current over the largest knockdown that needs no further test.
+
+If the current grows more, the line is tested for a higher equilibrium.
 """
 
 
 def fill_starts(problem: LineProblem) -> int:
     """Solve a line in uniform currents, and return the number of solutions found.
 
-    The solutions are written to `LineProblem.starts`:
+    The solutions are written to `LineProblem.starts`. For a line clear of the seabed, the rows hold
 
-    - rows 0 to 2: line clear of the seabed
-    - rows 3 to 5: line with a touchdown
-    - row 6: results of `lean_of`
+    - 0: depth of the free end [m] or, if negative, used buoyancy fraction minus 1
+    - 1: derivative of the height error with respect to this unknown
+    - 2: knockdown [m]
 
-    The three rows of a line hold its roots, the slopes of the miss, and the knockdowns [m]. A root
-    of at least 0 is the depth of the free end [m]; a negative root is the used buoyancy fraction
-    minus 1.
+    Rows 3 to 5 hold the same values for a line with a touchdown, and row 6 the results of
+    `lean_of`.
     """
     found = 0
     limits, starts = problem.limits, problem.starts
@@ -72,9 +78,9 @@ def fill_starts(problem: LineProblem) -> int:
 
 
 def start_of(problem: LineProblem, lands: bool) -> Root:
-    """Return the approximate root from which a search starts.
+    """Return an approximate equilibrium at which a search can start.
 
-    The root is not `found` if the complete search is needed.
+    `found` of the result is false if the complete search is needed.
     """
     limits = problem.limits
     unknown = whole_line(problem, lands)
@@ -132,12 +138,13 @@ def expected(problem: LineProblem, row: int, upright: float, top: float) -> tupl
 
     Parameters
     ----------
-    row : first row of `LineProblem.starts` for this kind of line
+    row : 0 for a line clear of the seabed, 3 for a line with a touchdown
     upright, top : depth of the free end in still water, and after knockdown [m]
 
     Returns
     -------
-    Root, coded as in `fill_starts`, and slope of the miss.
+    Depth or buoyancy fraction, coded as in row 0 of `fill_starts`, and derivative of the height
+    error.
     """
     # the uniform current that inclines the line as much as the actual current does
     starts = problem.starts

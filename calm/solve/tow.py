@@ -37,11 +37,16 @@ SCAN = 16
 spacing are not distinguished.
 """
 OVERSHOOT = 1.05
-"""Distance beyond the expected root that is tried in a uniform current, as a multiple of the miss.
-The march varies slightly with depth, since water levels divide a line.
+"""Distance to the second depth tried in uniform water, as a multiple of the height error.
+
+The distance exceeds the height error because the march varies slightly with depth, since water
+levels divide a line.
 """
 ROUGHLY = 5e-3
-"""Miss at which one linear step completes a rough root, as a fraction of the paid-out length."""
+"""Height error at which the search for an approximate equilibrium ends.
+
+The error is a fraction of the paid-out length. One linear step then completes the search.
+"""
 SAME = 1e-6
 """Relative tolerance of the strumming frequency."""
 LEAVING_DEPTH = 2e-3
@@ -49,8 +54,11 @@ LEAVING_DEPTH = 2e-3
 close is assumed to be leaving the water.
 """
 NARROW_JUMP, AT_THE_JUMP = 1e-9, 1e-6
-"""Width of a jump of the miss, and distance from the surface of the body that causes this jump, as
-fractions of the paid-out length.
+"""Tolerances for a body half out of the water, as fractions of the paid-out length.
+
+The height error of the line's upper end jumps if the midpoint of the body crosses the surface.
+NARROW_JUMP is the width of the jump, in depths of the free end. AT_THE_JUMP is the largest distance
+of the body from the surface.
 """
 PAY_OUT = "Pay out more line."
 RIDE_CLEAR = "Pay out or take in some line, so that no rigid piece or clamp is at the surface."
@@ -191,7 +199,7 @@ class _Marches:
 
 
 def _solved(net: NetSearch, towing: Towing) -> tuple[NetSolution, float | None]:
-    """Find the deepest equilibrium, and the free end's depth in the second deepest [m]."""
+    """Return the deepest equilibrium, and the free-end depth of the second deepest or None [m]."""
     rough = _Marches(net, max(COARSE_STEP, 2.0 * net.settings.angle_step))
     start, other_depth = _locate(rough, towing)
     how = net.marching(net.settings.angle_step, CHOSEN, FINE, given=False)
@@ -207,7 +215,7 @@ def _lacking(net: NetSearch) -> bool:
 
 
 def _locate(rough: _Marches, towing: Towing) -> tuple[float, float | None]:
-    """Find the approximate depths [m] of the free end in the two deepest equilibria."""
+    """Find approximate depths of the free end [m] in the deepest and second deepest equilibria."""
     span = rough.span
     found: list[float] = []
     allowed = rough.net.settings.tolerance * span
@@ -256,7 +264,8 @@ def _locate(rough: _Marches, towing: Towing) -> tuple[float, float | None]:
 def _upwards(water: Water, depth: float, low: float, span: float, shallowest: float) -> list[float]:
     """Return the depths of the free end to try, the deepest first.
 
-    In uniform water one depth is enough, as the miss is the distance to the root.
+    In uniform water, one depth is enough: the distance to the equilibrium equals the height error
+    `low` of the march at `depth`.
     """
     if any(np.ptp(column) for column in (water.u, water.v, water.w, water.density)):
         steps: list[float] = np.linspace(depth, shallowest, SCAN + 1)[1:].tolist()

@@ -28,7 +28,8 @@ TYPICAL_PARTS = 8
 class CompiledPart(Enum):
     """A part of the solver that is compiled separately.
 
-    The value of a member is the name of the function that is compiled last in this part.
+    The value of a member is the name of a function. This function is compiled last, so the part is
+    complete if the cache contains it.
     """
 
     LINE = "run_search"
@@ -39,7 +40,8 @@ class CompiledPart(Enum):
 class _Pace:
     """Work done so far by one part of the solver, and whether it runs compiled.
 
-    `announced` and `solved` are numbers of lines; `work` is the computing time, in typical lines.
+    `announced` and `solved` are numbers of lines. `work` is the computing time, divided by the time
+    for a typical line.
     """
 
     def __init__(self, solver: CompiledPart) -> None:
