@@ -59,7 +59,7 @@ tolerance of the used buoyancy, and for nodes slightly above or below their leve
 profile.
 """
 SHORT_LANDED_LENGTH = 4.0
-"""Longest part on the seabed, in anchor heights, if a shape without touchdown is preferred.
+"""Length on the seabed, in anchor heights, up to which a shape without touchdown is preferred.
 
 If more of the line lies on the seabed, the shape without touchdown is used only if its free end is
 higher.
