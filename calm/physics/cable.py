@@ -340,7 +340,7 @@ def split_length(
     expected: Vector,
     share: float,
 ) -> float:
-    """Return the length [m] of a segment above the first point where the segment must be split.
+    """Return the length [m] of the part of a segment above the first point where it must be split.
 
     The result is `cut` if there is no such point. `below` is the state below the whole segment.
     """
@@ -429,7 +429,7 @@ def until_switch(
     expected: Vector,
     law: int,
 ) -> float:
-    """Return the length [m] of a segment above the point where a drag law switches.
+    """Return the length [m] of the part of a segment above the point where a drag law switches.
 
     Only the upper `part` [m] of the segment is searched. The result is `part` if the law does not
     switch. `below` is the state below the whole segment, and `law` is as in `switch_at`.
@@ -488,8 +488,9 @@ def segment_length(
 ) -> float:
     """Return the longest allowed length of the next segment [m].
 
-    The limits are the rotation of the segment, `reach`, the next level of the water profile, and
-    the depth of minimum flow. `share` is as in `counts_across`.
+    The segment rotates by the angle step at most, and is not longer than `reach`. It ends at the
+    next level of the water profile, and at the depth of minimum flow. `share` is as in
+    `counts_across`.
     """
     _, _, z, fx, fy, fz, _, level = state
     tension = sqrt(fx * fx + fy * fy + fz * fz)

@@ -12,7 +12,7 @@ AIR_DENSITY = 1.225
 """Density of the air above the water [kg/m³], from the standard atmosphere at sea level."""
 
 AWASH = 0.02
-"""Fraction of unused buoyancy at which a float begins to submerge the parts above the surface.
+"""Fraction of unused buoyancy at which the parts above the surface begin to submerge.
 
 The parts submerge gradually as the unused buoyancy falls to zero. This avoids a jump of the drag
 when the line pulls the float under.

@@ -183,7 +183,7 @@ class Uncompilable(TypeError):
 
 
 SHORT = 40
-"""Number of instructions below which a law is inlined into its callers."""
+"""Number of instructions. A law with fewer instructions is inlined into its callers."""
 RESULT = "return"
 
 

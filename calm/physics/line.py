@@ -51,7 +51,7 @@ FAILURES = (
 )
 """Description of each outcome of a march."""
 NO_BALANCE = -2.0
-"""Marker for no balance, in place of the strain of a segment or the vertical axis of a rod."""
+"""Value of a segment's strain, or of the vertical component of a rod's axis, without balance."""
 
 
 class Bed(NamedTuple):

@@ -122,7 +122,8 @@ def distance_to_bend(
     """Return the distance [m] along a path to the next point where the drag has a kink.
 
     The drag has a kink at a level, and where the flow almost vanishes. Kinks nearer than
-    `LEAST_PART` times the segment length are skipped, except a level that has to split the segment.
+    `LEAST_PART` times the segment length are skipped. A level that has to split the segment is
+    never skipped.
 
     Parameters
     ----------

@@ -14,9 +14,7 @@ from calm.physics.stretch import Knot, mean_curve_strain
 from calm.physics.track import CABLE, CLAMP, CableStretch, Course
 
 NOTHING = 1e-9
-"""Pull at a touchdown, as a fraction of all loads, below which the audit ignores the direction of
-the pull.
-"""
+"""Smallest pull at a touchdown whose direction the audit checks, as a fraction of all loads."""
 
 
 def lay_line(

@@ -270,7 +270,7 @@ class BourgetMarichal:
     strouhal: float = 0.166
 
     LEAST_ANGLE = radians(15.0)
-    """Angle below which the cable's Cn at rest is invalid [rad]."""
+    """Smallest angle between cable and flow for which the cable's Cn at rest is valid [rad]."""
 
     @property
     def greatest(self) -> float:

@@ -120,7 +120,7 @@ class Rising:
 
     @cached_property
     def _tracks(self) -> tuple[Track, Track]:
-        """Two tracks: the part of the line marched from the upper end, and the other part."""
+        """Tracks of the two parts that are marched from the upper end and from the lower end."""
         below = replace(self.line.reversed(), towed=True)
         return (
             Track.of(self.line).first_pieces(self._split),

@@ -183,7 +183,9 @@ def bracketed_root(
     small: float,
     narrow: float,
 ) -> tuple[float, float, float]:
-    """Find the root of a continuous function between two numbers at which its signs differ.
+    """Find the root of a continuous function between two numbers.
+
+    The function must have opposite signs at these numbers.
 
     Parameters
     ----------

@@ -65,15 +65,16 @@ FLATTEST is the assumed slope of the scaled residual if the secant is flatter. M
 largest number of steps.
 """
 SINGULAR = 1e-14
-"""Scaled pivot below which the Newton step leaves an unknown unchanged."""
+"""Smallest pivot of the scaled Jacobian. A Newton step does not change unknowns without a pivot."""
 NEGLIGIBLE_PULL = 1e-5
 """Horizontal pull at a touchdown that is regarded as zero, as a fraction of the weight of a leg.
 
 The limit exceeds the drag of the weak current that is added to still water.
 """
 NEEDS_ROOM = -1
-"""Outcome of a search for which the work arrays hold too few segments (instead of `FOUND` or
-`NO_SHAPE_NEAR`).
+"""Outcome of a search if a leg needs more segments than the work arrays hold.
+
+All other outcomes are `FOUND` and `NO_SHAPE_NEAR`.
 """
 
 DEPTH_ERROR, TENSION_ERROR = range(2)

@@ -91,7 +91,7 @@ class LaidLeg:
 
     @property
     def ends(self) -> tuple[LegEnd, LegEnd]:
-        """The end at which the march begins, and the end at which it stops."""
+        """The upper and the lower end of the leg, or the lower end first if it is free."""
         upper, lower = self.leg.upper, self.leg.lower
         return (lower, upper) if self.kind == leg_numbers.HANGING_DOWN else (upper, lower)
 

@@ -77,7 +77,8 @@ def load_leg(
 def march_leg(net: NetProblem, i: int, x: Sequence[float], how: Marching) -> int:
     """March a leg for given unknowns, and return an outcome defined in `calm.physics.line`.
 
-    A strumming leg is marched until its frequency equals the vortex shedding frequency at its end.
+    For a strumming leg, the march is repeated with other strumming frequencies, until the frequency
+    equals the vortex shedding frequency at the end of the march.
     """
     leg, state = net.legs[i], net.state[i]
     failure = march_once(net, i, x, how)

@@ -67,7 +67,8 @@ class LegRow(NamedTuple):
     ----------
     kind : kind of march, `STANDING` to `ANCHORED`
     first, own : index of the leg's first unknown, and number of its unknowns
-    start, end : nodes at the upper and lower ends, or -1; reversed for a leg with a free lower end
+    start, end : numbers of the nodes at the upper and lower ends, or -1. For a leg with a free
+        lower end, `start` is at the lower end
     seabed : height of the seabed below the anchor [m]; -inf without an anchor
     rise : height of the anchor's top above the seabed [m]
     lifts : upward pull above which the leg ends at the anchor's top [N]
@@ -116,7 +117,7 @@ class NetProblem(NamedTuple):
     ----------
     lines : a `LineProblem` whose arrays have a row for each leg
     up : courses of the anchored legs in upward order
-    held : (·, 6) positions of each leg's held ends, at the start and the end of the march [m]
+    held : (·, 6) positions of the held ends of each leg, in the order `start`, `end` [m]
     state : (·, `OF_LEG`) state of each leg after its last march
     passed : (·, `OUT`) results of each leg's last march
     found : residual of the last march, divided by `rows`

@@ -298,13 +298,13 @@ class Nearby:
 
 
 def close_again(problem: LineProblem, root: Root) -> Closed:
-    """Close a line near a root, on the segments in the work arrays.
+    """Close a line near an approximate equilibrium, on the segments in the work arrays.
 
     The shape is written to the record `FINE`.
 
     Parameters
     ----------
-    root : approximate root; if not `found`, the segments are chosen anew
+    root : approximate equilibrium; if `root.found` is false, the segments are chosen anew
     """
     if root.found:
         return polish(problem, root, CHOSEN, FINE)

@@ -222,13 +222,13 @@ def load_again(problem: LineProblem, found: FoundShape) -> None:
 
 
 def shape_near(problem: LineProblem, referee: Referee, root: Root, lands: bool) -> FoundShape:
-    """Return the audited shape near an approximate root.
+    """Return the audited shape near an approximate equilibrium.
 
     If little of the line lies on the seabed, a shape clear of the seabed is also sought.
 
     Parameters
     ----------
-    lands : whether the root has a touchdown
+    lands : whether the approximate equilibrium has a touchdown
     """
     limits = problem.limits
     if not lands:
@@ -265,7 +265,7 @@ def shape_near(problem: LineProblem, referee: Referee, root: Root, lands: bool) 
 
 
 def hanging_clear(problem: LineProblem, root: Root) -> Root:
-    """Return a copy of an approximate root, for the same line without touchdown."""
+    """Return a copy of an approximate equilibrium, for the same line without touchdown."""
     goal = problem.limits.anchor_height - problem.limits.depth
     given = root.unknown
     unknown = Unknown(goal, given.sought, given.rides, False, given.stages)

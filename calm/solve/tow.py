@@ -50,8 +50,9 @@ The error is a fraction of the paid-out length. One linear step then completes t
 SAME = 1e-6
 """Relative tolerance of the strumming frequency."""
 LEAVING_DEPTH = 2e-3
-"""Depth of the free end, as a fraction of the paid-out length, below which a line that does not
-close is assumed to be leaving the water.
+"""Depth of a free end near the surface, as a fraction of the paid-out length.
+
+A line with a shallower free end that cannot be closed is assumed to be leaving the water.
 """
 NARROW_JUMP, AT_THE_JUMP = 1e-9, 1e-6
 """Tolerances for a body half out of the water, as fractions of the paid-out length.
