@@ -87,7 +87,7 @@ def segment_lift(cable: CableStretch, cut: float, density: float, gravity: float
 
 
 def segment_area(cable: CableStretch, cut: float, density: float, strain: float) -> float:
-    """Return the length of unstretched cable that has the same drag in reference water [m].
+    """Return the length [m] of unstretched cable in reference water with the drag of a segment.
 
     Stretch multiplies this length by √(1 + strain) if `thinning` is ½ (constant volume). Stretch
     has no effect if `thinning` is 0.

@@ -292,7 +292,7 @@ _ZERO_BY_DEFAULT = {
 }
 """Optional arrays of a `Line`, whose default is zero.
 
-A key is the name of an array that is always given. The optional arrays in its value have the same
+Each key names an array that is always given. The value names the optional arrays of the same
 length.
 """
 

@@ -28,8 +28,8 @@ LOOKED_AT, SURE = 6, 0.3
 """Parameters of the test for a higher equilibrium (`is_highest`).
 
 LOOKED_AT is the number of shallower free-end depths for which the knockdown is estimated. The
-estimate must exceed the knockdown at that depth by a fraction of the distance to the equilibrium.
-SURE is this fraction.
+estimate must exceed the knockdown at that depth by the fraction SURE of the distance to the
+equilibrium.
 """
 LEAST_CURRENT_GROWTH = 0.25
 """Relative growth of the current over the largest knockdown that needs no further test.
