@@ -1,6 +1,6 @@
 """Audit of every solution, which recomputes its force and moment balance from the coordinates.
 
-The audit shares no code with the march.
+The audit and the march share only the measured curves of stretch, drag and strumming.
 
 - Force balance: buoyancy and drag of all elements sum to the force at the line's end.
 - Moment balance: the axis of every element is parallel to the mean of the forces at its two ends.
