@@ -151,7 +151,7 @@ DISAGREEMENT = 0.01
 """Relative difference allowed between redundant values."""
 
 IN_AIR: Mapping[str, object] = {"fluid": "air"}
-"""Context for definitions used in air, which only need a mass."""
+"""Validation context for a component that is used in air; the component only needs a mass."""
 
 MASS = QuantityField("mass", at_least=0)
 DENSITY = QuantityField("density", above=0)

@@ -16,7 +16,7 @@ from calm.files.yaml_document import Location
 _BLANK_LINE = re.compile(r"^[ \t]*\r?\n(?=(?:[ ]*#.*\n|[ \t]*\r?\n)*\S)", re.MULTILINE)
 
 NAMED = ("components", "environments")
-"""Sections that contain definitions by name."""
+"""Sections whose keys are names chosen by the user: component ids or environment names."""
 
 
 class EditError(CalmError):
@@ -142,7 +142,7 @@ class Page:
         Parameters
         ----------
         index : index of the first new item
-        values : the items; a `Worded` list supplies items with their own text
+        values : the new items; those of a `Worded` list are written with their own text
         """
         node = self.node(location)
         if node is None or not node.children:
