@@ -1,4 +1,4 @@
-"""Conversion of the pieces and environment in a mooring file to the arrays of the solver."""
+"""Convert the pieces and the environment of a mooring file to the arrays that the solver uses."""
 
 from collections import deque
 from collections.abc import Callable, Sequence
@@ -24,15 +24,16 @@ from calm.physics.strumming import BourgetMarichal
 from calm.records.profile_tables import components
 
 TOWED_SPHERE_CX = 0.90
-"""Drag coefficient Cx of a sphere at the free end of a tow, which oscillates; a fixed sphere has
-0.45 (Bourget & Marichal).
+"""Drag coefficient Cx of a sphere at the free end of a tow (Bourget & Marichal).
+
+Such a sphere oscillates. A fixed sphere has a Cx of 0.45.
 """
 
 DEEPEST = 11_000.0
 """Default water depth of a tow [m], larger than the depth of any trench."""
 
 LINEAR_WITHIN = 1e-5
-"""Allowed relative error of linear interpolation of the sea water density between levels."""
+"""Allowed relative error of the sea water density after linear interpolation between levels."""
 
 AIR_VISCOSITY = 1.46e-5
 """Kinematic viscosity of air [m²/s], in the standard atmosphere at sea level."""

@@ -62,7 +62,7 @@ def hashed(path: Path) -> str:
 
 
 def kept(attributes: Mapping[str, Any]) -> Attributes:
-    """Select the attributes of an input file that also apply to results, such as the site."""
+    """Return those attributes of an input file that also apply to results, such as the site."""
     return {
         name: value
         for name, value in attributes.items()

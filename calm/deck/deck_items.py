@@ -291,7 +291,7 @@ def label_of_run(items: Sequence[DeckItem]) -> str:
 
 
 def name_of_run(items: Sequence[DeckItem]) -> str:
-    """Format the name of an item, or the number of items with each name."""
+    """Format the name of a single item, or the names of several items with their counts."""
     counts = Counter(item.name for item in items)
     if len(items) == 1:
         return items[0].name

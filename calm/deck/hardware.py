@@ -124,7 +124,7 @@ def _cut(result: Result, one: DeckItem, over: int | None, count: int) -> Cut:
 
 
 def _effect(result: Result, index: int, length: float) -> float | None:
-    """Return the increase in depth of the top [m] if one piece is longer by `LENGTH_ERROR`.
+    """Return the increase in depth of the top [m] if one piece is 0.5 % longer.
 
     The result is None if the longer line has no equilibrium.
     """
@@ -163,7 +163,7 @@ _SMALL = frozenset({"shackles", "pins", "cotter pins", "thimbles"})
 
 @dataclass(frozen=True)
 class Stock:
-    """Number of connectors or accessories of one component that a line needs.
+    """Row of the hardware list: number of equal connectors or accessories that a mooring needs.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Component catalogue from several levels: shipped, user's own, given files, and the mooring file.
+"""Component catalogue in levels: mooring file, given files, the user's folder, and shipped files.
 
 Definitions are kept as text and validated on first use.
 """

@@ -151,8 +151,8 @@ class WordIndex:
         ----------
         text : words and limits, separated by blanks
         kinds : kinds of components to search; by default all
-        first : ids to list first, in this order; exact matches precede them, and ids that lack a word
-            of the search do not move up
+        first : ids to list first, in this order; exact matches precede them, and ids that do not
+            contain all words do not move up
         by : key of the column that sorts the result, largest magnitude first; by default the best
             matches come first
         """

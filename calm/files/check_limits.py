@@ -179,7 +179,7 @@ LENIENT_IF_LESS = (
     *("weight", "diameter", "cn", "ct", "cx", "cd", "drag_area", "kn", "kt"),
     *("k_surface", "wind_area", "wind_cd"),
 )
-"""Component keys for which a smaller value makes the check more lenient, except for anchors."""
+"""Keys for which a smaller value makes the check more lenient, in components but anchors."""
 
 
 @dataclass(frozen=True)

@@ -212,7 +212,7 @@ class _Reader:
         return values, event
 
     def _refused(self, event: events.NodeEvent, depth: int, message: str = "") -> Node:
-        """Skip a node without reporting problems inside it; report `message` instead, if given."""
+        """Skip a node. Report `message`, if given, but no problems inside the node."""
         before = len(self._refusals)
         node = self._node(event, depth)
         self._refusals[before:] = [_refusal(event, message)] if message else []

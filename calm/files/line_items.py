@@ -133,7 +133,7 @@ class LineReader:
     def _check_without_kind(self, item: SourceMapping, *, judged: bool) -> None:
         """Check the keys of an item whose component is unknown or has mistakes.
 
-        If `judged` is true, all keys but `length` were checked with the component definition before.
+        If `judged` is true, all keys but `length` were already checked with the definition.
         """
         if item.data.get("length", "fit") != "fit":
             self._quantity(item, "length", POSITIVE_LENGTH, "")
@@ -342,7 +342,7 @@ class LineReader:
         entry: CatalogueEntry,
         item: SourceMapping,
     ) -> tuple[Piece, ...]:
-        """Set the values of an assembly on those parts that lack them."""
+        """Use the values of an assembly for those parts that have no values of their own."""
         for key in ASSEMBLY_FIGURES:
             value = getattr(assembly, key)
             if value is None:

@@ -75,8 +75,9 @@ _FALL = 0.1
 overturn.
 """
 _RATIO = 0.05
-"""Lowest plausible salinity of the sea; lower values indicate a lake, or a mass fraction instead of
-g/kg.
+"""Lowest plausible salinity of the sea.
+
+A lower value is that of a lake, or a mass fraction that was written instead of g/kg.
 """
 _WARMEST_BELOW = 30.0
 """Temperature of the deepest water [°C] above which temperature and salinity may be exchanged.

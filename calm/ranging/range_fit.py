@@ -40,7 +40,7 @@ ODDS = 20.0
 
 @dataclass(frozen=True)
 class SecondPlace:
-    """Second position that fits the ranges nearly as well.
+    """Second position that fits the ranges nearly as well as the chosen position.
 
     Attributes
     ----------
@@ -337,10 +337,9 @@ def _intervals(
 FAR = 2.0
 """Distance from the planned position, in water depths, above which the position is doubtful."""
 NEAR = 0.5
-"""Fraction that decides whether a position such as 48.18 may mean 48°18′.
+"""Fraction of the distance from the planned position.
 
-This is suggested if the distance from the planned position is then at most this fraction of the
-original distance.
+If reading 48.18 as 48°18′ reduces the distance to this fraction or less, this reading is suggested.
 """
 DEEPER, DEEPER_SHARE = 30.0, 0.03
 """Difference from the planned depth above which the depth is doubtful: the larger of a value [m]
@@ -377,8 +376,8 @@ def with_deployed(
 
     Returns
     -------
-    The mooring file, its new text, sentences on the deviation from the planned position, and
-    doubts.
+    The mooring file, the new text of this file, sentences on the deviation from the planned
+    position, and reasons to doubt the position.
 
     Raises
     ------
@@ -406,7 +405,10 @@ def with_deployed(
 def _plan_deviation(
     file: MooringFile, located: Located, water_depth: float
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Return sentences on the deviation from the planned position and depth, and doubts."""
+    """Return sentences on the deviation from the planned position and depth.
+
+    Also return the reasons to doubt the position.
+    """
     planned, plan_depth = file.position, file.environment.depth
     assert plan_depth is not None  # a mooring always has a water depth
     deeper = water_depth - plan_depth

@@ -157,7 +157,9 @@ class RangeModel:
         return self._below(fit.x)
 
     def tested(self, x: Floats, used: Booleans) -> Booleans:
-        """Reject the worst outlier, or restore a rejected range that fits; return the new mask.
+        """Reject the worst outlier, or restore a rejected range that fits.
+
+        Return the new mask of the ranges in use.
 
         Each residual is compared with its standard error, estimated from the other ranges in use.
         """
@@ -235,7 +237,9 @@ class RangeModel:
         return [f"{text}: were they taken with another speed of sound?"]
 
     def another_place(self, x: Floats, used: Booleans, scatter: float) -> Floats | None:
-        """Find another position that fits the ranges nearly as well, or return None.
+        """Find another position that fits the ranges nearly as well as the fitted position `x`.
+
+        Return None if there is no such position.
 
         Parameters
         ----------

@@ -302,7 +302,7 @@ _PART = re.compile(r"(?i)(?:ship[ _]?)?(lat|lon)\w*?[ _\[(]*(deg|min|hem|ns|ew|d
 _LARGEST = 5_000_000
 _NEAR = 1.0  # degrees: largest difference between the positions of a survey
 _BareRow = tuple[int, list[str]]
-"""The number of a line and its cells."""
+"""Line number and cells of one row in a file without column headings."""
 
 
 def _survey_table(path: Path) -> tuple[delimited.TextTable, float | None, list[str]]:
@@ -311,7 +311,7 @@ def _survey_table(path: Path) -> tuple[delimited.TextTable, float | None, list[s
     Raises
     ------
     InputError
-        The file is unreadable or empty, or its form is unknown.
+        The file is unreadable or empty, or has an unknown format.
     """
     rows = _bare_rows(path)
     columns = len(rows[0][1]) if rows else 0
@@ -357,8 +357,8 @@ def _row_of_depths(rows: Sequence[_BareRow]) -> int:
     """Return the number of the row that contains the depths, counted from 1.
 
     The number is 2 if a row with the target precedes the depths; otherwise, it is 1. Return 0 if
-    the file has another format. In the NOC format, the last two cells of all other rows are positions
-    of one survey.
+    the file has another format. In the NOC format, the last two cells of all other rows are
+    positions of one survey.
     """
     if len(rows) <= 4:
         return 0

@@ -291,7 +291,10 @@ def retyped(text: str, lines: Sequence[str]) -> str:
 
 
 def _taken_from(old: Sequence[str], new: Sequence[str]) -> list[int | None]:
-    """Return the index of the old line that each new line equals or replaces; None if added."""
+    """Return, for each new line, the index of the old line that the new line equals or replaces.
+
+    The index is None for an added line.
+    """
     # Comparing is slow, and usually only one line differs.
     head = _common_start(old, new)
     tail = _common_start(old[head:][::-1], new[head:][::-1])

@@ -291,7 +291,7 @@ class Draft:
         return self._changed(patches, location, data)
 
     def _changed(self, patches: Iterable[Patch], location: Location, value: Any) -> Draft:
-        """Apply patches to the text, and check that its data have changed at the location only."""
+        """Apply patches to the text, and check that only the value at the location has changed."""
         data = changes.with_value(self._data, location, value)
         text = patched(self._padded, patches)
         line_break = self._page.style.line_break
