@@ -101,7 +101,7 @@ def _shape_drag(shape: SphereShape | CylinderShape) -> tuple[float, float, bool]
 def axial_drag_of(component: files.Component) -> float:
     """Return the drag K of a clamped component in flow along the line [N/(m/s)²].
 
-    This is the tangential drag, or Kn if the drag does not depend on the direction of the flow.
+    This is Kt if the drag depends on the direction of the flow. Otherwise, it is Kn.
     """
     kn, kt, directional = drag_of(component)
     return kt if directional else kn

@@ -37,7 +37,7 @@ from calm.files.mooring_file import leg_numbers
 from calm.solve import Status
 
 FAINT = 0.1
-"""Speed of the weak current for the sheets of a line that is slack in still water [m/s]."""
+"""Speed of the weak current in which a line is solved if it is slack in still water [m/s]."""
 
 _Listed = TypeVar("_Listed")
 
@@ -248,7 +248,7 @@ def deck_of(
 
 
 def _deck_times(file: MooringFile) -> Mapping[str, float] | None:
-    """Return the handling time of a piece [s] by role, or None if unspecified."""
+    """Return the handling time of one piece [s] for each role, or None if unspecified."""
     given = None if file.document is None else file.document.deck_time
     return None if given is None else {str(role): time for role, time in given.items()}
 

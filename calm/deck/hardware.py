@@ -21,7 +21,7 @@ from calm.solve import expect_many
 LENGTH_ERROR = 0.005
 """Relative error of a cut length.
 
-The value is the default tolerance, and the error whose effect on depth is reported.
+This is the default tolerance. The deck sheets also give the effect of this error on depth.
 """
 
 ORDINARY = 20

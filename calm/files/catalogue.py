@@ -388,7 +388,7 @@ _LOADED: FileCache[Catalogue] = FileCache()
 def defined(id: str, values: Mapping[str, Any]) -> tuple[Component | None, tuple[Problem, ...]]:
     """Build a component from its values; return the component and any mistakes in the values.
 
-    The component is None if there are mistakes, or for an assembly or outline.
+    The component is None if the values have mistakes, or if they define an assembly or outline.
     """
     problems: list[Problem] = []
     section = SourceMapping.of(Document(id, {id: dict(values)}), problems).child(id)

@@ -195,7 +195,10 @@ class LineReader:
         )
 
     def _measured(self, item: SourceMapping, component: Flexible) -> tuple[float, float]:
-        """Return the unstretched length [m] of a cable measured under a load, and this load [N]."""
+        """Return the unstretched length [m] of a cable, and the load [N] in `length_at`.
+
+        The file gives the length under this load.
+        """
         if not isinstance(item.data["length_at"], dict):
             example = "{load: 2 kN, length: 480 m}"
             item.refuse(("length_at",), f"`length_at` must have the form `{example}`")

@@ -28,7 +28,7 @@ class Place:
     Attributes
     ----------
     item : index of the item in the `line:` of the file
-    repeat : index within the `count` of the item
+    repeat : index of the repetition, if the item has a `count`
     part : index of the piece in an assembly; -1 for a component
     clamp : index of the clamp on the piece; -1 for the piece itself
     """

@@ -64,8 +64,8 @@ class LineLists:
     def place(self, index: int, *, above: bool) -> tuple[Location, int]:
         """Convert a line index to the location of a list and an index in this list.
 
-        An index between two legs means the start of the lower leg if `above`, else the end of the
-        upper leg.
+        At the boundary of two legs, the result is the start of the lower leg if `above` is true.
+        Otherwise, the result is the end of the upper leg.
         """
         for rows, count in self.all[:-1]:
             if index < count or (index == count and not above):
