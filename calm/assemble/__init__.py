@@ -1,4 +1,4 @@
-"""Conversion of the pieces and environment in a mooring file to the arrays of the solver."""
+"""Convert the pieces and the environment of a mooring file to the arrays that the solver uses."""
 
 from calm.assemble.arrays import assemble_floating as assemble_floating
 from calm.assemble.arrays import assemble_line as assemble_line

@@ -1,4 +1,4 @@
-"""Conversion of the pieces and environment in a mooring file to the arrays of the solver."""
+"""Convert the pieces and the environment of a mooring file to the arrays that the solver uses."""
 
 from collections import deque
 from collections.abc import Callable, Sequence
@@ -24,15 +24,16 @@ from calm.physics.strumming import BourgetMarichal
 from calm.records.profile_tables import components
 
 TOWED_SPHERE_CX = 0.90
-"""Drag coefficient Cx of a sphere at the free end of a tow, which oscillates; a fixed sphere has
-0.45 (Bourget & Marichal).
+"""Drag coefficient Cx of a sphere at the free end of a tow (Bourget & Marichal).
+
+Such a sphere oscillates. A fixed sphere has a Cx of 0.45.
 """
 
 DEEPEST = 11_000.0
 """Default water depth of a tow [m], larger than the depth of any trench."""
 
 LINEAR_WITHIN = 1e-5
-"""Allowed relative error of linear interpolation of the sea water density between levels."""
+"""Allowed relative error of the sea water density after linear interpolation between levels."""
 
 AIR_VISCOSITY = 1.46e-5
 """Kinematic viscosity of air [m²/s], in the standard atmosphere at sea level."""
@@ -45,7 +46,7 @@ def assemble_line(
 ) -> Line:
     """Build the arrays of the line above the anchor, or of a whole towed line, in piece order.
 
-    A piece with unknown fitted length has length 0.
+    A piece that is cut to fit has length 0 until the length is computed.
 
     Parameters
     ----------
@@ -63,7 +64,7 @@ def assemble_line(
 
 
 _ASSEMBLED: deque[tuple[object, Line]] = deque(maxlen=32)
-"""Cache of the latest lines, with the inputs from which they were built."""
+"""Cache of the latest lines. Each entry contains the inputs of `assemble_line` and the line."""
 
 
 def _assembled(pieces: Sequence[files.Piece], solver: Solver, gravity: float) -> Line:
@@ -131,7 +132,10 @@ def _elongation(component: files.Component) -> ElongationCurve | None:
 
 
 def with_axial_clamps(line: Line, pieces: Sequence[files.Piece]) -> Line:
-    """Return a copy of a line with the drag of clamps in axial flow, as in descent and ascent."""
+    """Return a copy of a line whose clamps have their axial drag.
+
+    In descent and ascent, the water flows along the line.
+    """
     clamps = [clamp.component for piece in pieces for clamp in piece.clamps]
     axial = [drag_of(each)[2] for each in clamps]
     curves = tuple(
@@ -154,9 +158,9 @@ def assemble_floating(
 ) -> Floating | None:
     """Return the surface properties of the first float.
 
-    The result is None without a float, or if draft and surface drag are unknown. By default, a
-    sphere has a spherical hull, and a cylinder has a cylindrical hull. Without volume, the draft is
-    unknown.
+    Return None if the line has no float. Also return None if neither the hull nor the surface drag
+    of the float is known; a hull needs a volume. By default, a sphere has a spherical hull, and a
+    cylinder has a cylindrical hull.
     """
     parts = (piece.component for piece in pieces)
     floats = (part for part in parts if isinstance(part, files.Rigid) and part.net_buoyancy > 0.0)
@@ -185,7 +189,10 @@ def assemble_floating(
 
 
 def _hull_volume(component: RigidComponent) -> float | None:
-    """Return the displaced volume of the hull [m³], or else the last volume in the hull table."""
+    """Return the displaced volume of a float [m³], or None if unknown.
+
+    If only a hull table is given, this is the last volume in the table.
+    """
     if component.displaced_volume is None and isinstance(component.hull, Displacement):
         return component.hull.displacement[-1][1]
     return component.displaced_volume
@@ -243,8 +250,8 @@ def assemble_water(environment: Environment) -> Water:
 def _viscosity(environment: Environment, levels: Floats, density: Floats) -> tuple[Floats, Floats]:
     """Return depths [m], and kinematic viscosities at these depths [m²/s].
 
-    Without temperature and salinity, the viscosity is constant, as in air or in sea water of 10 °C
-    and salinity 35.
+    If temperature and salinity are not given, the viscosity is constant. It is then the viscosity
+    of air, or of sea water at 10 °C and salinity 35.
     """
     sea = environment.density
     if not isinstance(sea, SeaWater):
@@ -295,7 +302,10 @@ def _density(environment: Environment) -> tuple[Floats, Floats]:
 
 
 def _probed(sea: SeaWater, depth: Floats) -> tuple[Floats, Floats]:
-    """Return temperature [°C] and practical salinity at depths [m] of any shape."""
+    """Interpolate the temperature [°C] and practical salinity at the given depths [m].
+
+    Both results have the shape of the array `depth`.
+    """
     temperature, salinity = sea.temperature, sea.salinity
     return (
         np.interp(depth, temperature.depth, temperature.value),
@@ -304,9 +314,9 @@ def _probed(sea: SeaWater, depth: Floats) -> tuple[Floats, Floats]:
 
 
 def _refined(levels: Floats, values: Callable[[Floats], Floats]) -> Floats:
-    """Bisect levels until `values` is linear between them.
+    """Return the given levels and the new levels that are needed for linear interpolation.
 
-    The given levels are kept, because `values` may have kinks there.
+    Levels are added until the function `values` is nearly linear between any two neighbours.
     """
     while True:
         thickness = np.diff(levels)[:, np.newaxis]

@@ -7,7 +7,7 @@ from calm.files.catalogue_search import Figures, WordIndex
 
 
 class Index(WordIndex):
-    """Search index of a catalogue that also contains the values of the components."""
+    """Search index of a catalogue, including the values of the components."""
 
     def __init__(self, catalogue: Catalogue) -> None:
         super().__init__(catalogue)

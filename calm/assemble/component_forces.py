@@ -30,8 +30,9 @@ def net_buoyancy(component: files.Component, gravity: float) -> float:
 def mass_in_air(component: files.Component) -> float | None:
     """Return the mass in air [kg; kg/m for a cable or chain], or None if unknown.
 
-    An unspecified mass follows from the weight in water and the displaced volume or, without
-    volume, the density of the material. Chains and anchors are of steel by default.
+    An unspecified mass is computed from the weight in water and the displaced volume. If the volume
+    is unknown, the density of the material is used instead. Chains and anchors are of steel by
+    default.
     """
     if component.mass is not None:
         return component.mass
@@ -50,10 +51,11 @@ def mass_in_air(component: files.Component) -> float | None:
 
 
 def drag_of(component: files.Component, solver: Solver | None = None) -> tuple[float, float, bool]:
-    """Return the drags Kn and Kt [N/(m/s)²; per metre for a cable or chain], and a flag.
+    """Return Kn, Kt, and whether the drag depends on the direction of the flow.
 
-    The flag is true if the drag depends on the direction of the flow relative to the axis. An
-    anchor has no drag. `solver` sets the friction and strumming laws; None sets the defaults.
+    Kn is the normal drag and Kt the tangential drag [N/(m/s)²; per metre for a cable or chain]. An
+    anchor has no drag. The friction and strumming laws are those of `solver`, or the default laws
+    if `solver` is None.
     """
     if isinstance(component, SphereShape | CylinderShape):
         return _shape_drag(component)
@@ -99,7 +101,7 @@ def _shape_drag(shape: SphereShape | CylinderShape) -> tuple[float, float, bool]
 def axial_drag_of(component: files.Component) -> float:
     """Return the drag K of a clamped component in flow along the line [N/(m/s)²].
 
-    This is the tangential drag, or Kn if the drag does not depend on the direction of the flow.
+    This is Kt if the drag depends on the direction of the flow. Otherwise, it is Kn.
     """
     kn, kt, directional = drag_of(component)
     return kt if directional else kn
@@ -109,8 +111,8 @@ def cable_drag(component: FlexibleComponent, solver: Solver) -> tuple[float, flo
     """Return the drags Kn and Kt per metre of cable or chain [N/(m/s)²].
 
     Kn of a cable includes strumming, except with Bourget & Marichal's law. With Pode's constant
-    friction, Kt is Ct ½ρ Cn D. The default Ct is the default of the quadratic law times π, divided
-    by the default Cn (0.012, 0.022 or 0.031 for a cable, depending on the finish).
+    friction, Kt is Ct ½ρ Cn D. In that law, the default Ct of a cable is 0.012, 0.022 or 0.031,
+    depending on the finish. This is π Ct / Cn, with the default Ct and Cn of the quadratic law.
     """
     if isinstance(component, Cable):
         usual = drag.CABLE_CN, drag.CABLE_CT[component.finish or "smooth"]
@@ -144,7 +146,10 @@ def _strumming_cn(cable: Cable, cn: float, solver: Solver) -> float:
 
 
 def _mass(cable: Cable) -> float:
-    """Return the mass per metre [kg/m], if necessary from weight in water and diameter."""
+    """Return the mass per metre [kg/m].
+
+    An unspecified mass is computed from the weight in water and the diameter.
+    """
     if cable.mass is not None:
         return cable.mass
     displaced = CATALOGUE_DENSITY * pi * cable.diameter**2 / 4
@@ -163,8 +168,8 @@ class Datasheet:
     Attributes
     ----------
     net_buoyancy : net buoyancy, positive up [N]
-    kn, kt : drag normal and tangential to the axis at 1 m/s [N/(m/s)²]; for an anchor, None and the
-        drag during the drop
+    kn : drag normal to the axis at 1 m/s [N/(m/s)²]; None for an anchor
+    kt : drag tangential to the axis at 1 m/s [N/(m/s)²]; for an anchor, drag during the drop
     cd_area : drag coefficient times area, normal to the axis [m²]
     """
 
@@ -177,8 +182,8 @@ class Datasheet:
 def datasheet(definition: Defined, catalogue: files.Catalogue | None = None) -> Datasheet | None:
     """Return the derived values of a component, or the sums over the parts of an assembly.
 
-    An outline has no derived values. Nor has an assembly with a part that is not in the catalogue,
-    or that overrides values of its component.
+    Return None for an outline. Also return None for an assembly if one of its parts is not in the
+    catalogue, or if one of its parts overrides a value of the component.
     """
     if isinstance(definition, files.Component):
         return _component_datasheet(definition, 1.0)

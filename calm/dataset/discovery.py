@@ -25,9 +25,9 @@ ARCHIVED: Attributes = {
     "cdm_data_type": "Station",
     "standard_name_vocabulary": "CF Standard Name Table v93",
 }
-"""Attributes common to all files in the form of archives."""
+"""Global attributes common to all files that are written for data archives."""
 GCMD = "GCMD Science Keywords"
-"""Vocabulary of keywords."""
+"""Name of the vocabulary from which the keywords of a file are taken."""
 FLAGS: Mapping[int, str] = {
     0: "unknown", 1: "good_data", 2: "probably_good_data",
     3: "potentially_correctable_bad_data", 4: "bad_data", 7: "nominal_value",
@@ -62,7 +62,7 @@ def hashed(path: Path) -> str:
 
 
 def kept(attributes: Mapping[str, Any]) -> Attributes:
-    """Select the attributes of an input file that also apply to results, such as the site."""
+    """Return those attributes of an input file that also apply to results, such as the site."""
     return {
         name: value
         for name, value in attributes.items()
@@ -152,7 +152,8 @@ def with_flags(
 
     Parameters
     ----------
-    names : for each flagged variable, the names of its other ancillary variables
+    names : ancillary variables of each flagged variable, without the new quality flags; the keys
+        are the names of the flagged variables
     cell_methods : CF attribute `cell_methods` of the flagged variables
     """
     found = []

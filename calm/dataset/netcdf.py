@@ -51,9 +51,10 @@ def netcdf_of(layout: ResultLayout, block: int = 0) -> bytes:
 
 
 def packed(layout: ResultLayout, block: int, arrays: Mapping[str, NDArray[Any]]) -> Chunks:
-    """Compress the arrays of a block of times to HDF5 chunks, one per variable.
+    """Compress the values of one block of times; return one HDF5 chunk for each variable.
 
-    `block` is the number of times in a chunk. The `arrays` have the shape (n, …), n <= `block`.
+    `block` is the number of times in a chunk. `arrays` contains the values by variable name. The
+    first dimension of each array is time, with at most `block` times.
     """
     chunks = {}
     for variable in layout.in_blocks:
@@ -79,8 +80,8 @@ def write_netcdf(
     ----------
     block : number of times in a block
     blocks : results of `packed`, in order
-    last : returns the attributes known only after the last block; in the layout, they are
-        placeholders: numbers, or texts of the same length
+    last : function that returns the attributes known only after the last block; the layout
+        contains placeholders for these attributes: numbers, or texts of the final length
 
     Raises
     ------
@@ -177,8 +178,9 @@ CLAMPS = "clamped instrument, in order from the top"
 """Description of the labels along the dimension `clamp`."""
 
 NUMBER = "<f4"
-"""Data type of depths, offsets, forces and angles for many profiles; without an equilibrium they
-are NaN.
+"""Data type of time-dependent depths, offsets, forces and angles.
+
+These values are NaN at times without an equilibrium.
 """
 
 _PLACE = {"latitude": "degrees_north", "longitude": "degrees_east"}
@@ -193,7 +195,8 @@ def of_net(
 ) -> list[Variable]:
     """Adapt the variables of a single line to a net.
 
-    Offsets are described relative to the origin. Leg names and leg indices are added.
+    In the descriptions of offsets, the anchor is replaced by the origin of the net. Variables with
+    the leg names and leg indices are added.
 
     Parameters
     ----------
@@ -296,9 +299,10 @@ def labels(name: str, dimension: str, texts: Iterable[str], meaning: str) -> Var
 
 
 def down_the_line(sizes: Mapping[str, int]) -> list[Variable]:
-    """Create the coordinates that number parts, nodes and sensors from the top down.
+    """Create the index coordinates of the pieces, clamps, nodes, sensors and levels.
 
-    In the sense of CF, these numbers are dimensionless vertical coordinates.
+    The indices begin with 0 at the top. In the CF conventions, they are dimensionless vertical
+    coordinates.
     """
     # depths vary in time, and adjacent parts may have equal depths
     return [
@@ -314,12 +318,14 @@ def down_the_line(sizes: Mapping[str, int]) -> list[Variable]:
 
 
 def station(name: str, place: Sequence[float], of_what: str) -> tuple[list[Variable], str]:
-    """Create the CF station variables of a mooring, and text to append to `coordinates`.
+    """Create the CF station variables of a mooring; also return their names as text.
+
+    The text is to be appended to the attribute `coordinates` of other variables.
 
     Parameters
     ----------
-    place : latitude and longitude [degrees north, degrees east]; if empty, the dataset is no CF
-        discrete sampling geometry
+    place : latitude and longitude [degrees north, degrees east]; if empty, the station has a name
+        only, and the dataset does not follow the CF rules for stations
     of_what : object at this position, for the attribute `long_name`
     """
     label = np.array(name, dtype=np.str_)
@@ -349,7 +355,8 @@ def source_date() -> datetime | None:
 def origin(path: str, name: str, description: str, command: str) -> Attributes:
     """Return global attributes about the origin of a result; unknown attributes are empty.
 
-    The only date is `SOURCE_DATE_EPOCH`, so that the same input gives identical bytes.
+    A date is written only if `SOURCE_DATE_EPOCH` is set. Therefore, the same input gives an
+    identical file.
 
     `path`, `name` and `description` are those of the mooring file.
     """

@@ -37,7 +37,7 @@ from calm.files.mooring_file import leg_numbers
 from calm.solve import Status
 
 FAINT = 0.1
-"""Speed of the weak current for the sheets of a line that is slack in still water [m/s]."""
+"""Speed of the weak current in which a line is solved if it is slack in still water [m/s]."""
 
 _Listed = TypeVar("_Listed")
 
@@ -67,9 +67,9 @@ class Lift:
     ----------
     index, label : index and label of the piece
     mass : mass in air [kg]; None if unknown, and for a cable or chain, which is not lifted
-    weight : weight in water [N], positive down; None if a length is unknown
-    hanging : weight in water of everything over the side, which is the winch load [N], positive
-        down
+    weight : weight in water [N], positive down; None if the length of the piece is unknown
+    hanging : winch load [N], which is the weight in water of everything over the side, positive
+        down; None if a length is unknown
     """
 
     index: int
@@ -107,10 +107,11 @@ class Deck:
 
     Attributes
     ----------
-    result, environment : result in the environment of the sheets, and name of this environment
+    result : result in the environment for which the sheets are made
+    environment : name of this environment
     parts : pieces and clamps down the line, leg by leg in a net
-    deployment, recovery : parts in the order in which they go over the side, and in order of
-        surfacing
+    deployment : parts in the order in which they go over the side
+    recovery : parts in the order in which they surface
     rise : rise of the line without its anchor; None for a net, or without a solution
     plan : plan of the anchor drop, or the reason why there is none; None for an anchor-first
         deployment, and for a net
@@ -142,7 +143,7 @@ class Deck:
 
     @cached_property
     def numbers(self) -> Mapping[str, str]:
-        """Item number of each piece and clamp by label, as in the design check."""
+        """Item numbers of pieces and clamps by label, equal to those in the design check."""
         return item_numbers(self.result)
 
     def leg(self, index: int) -> str:
@@ -156,7 +157,11 @@ class Deck:
     def by_leg(
         self, items: Iterable[_Listed], index: Callable[[_Listed], int]
     ) -> Iterator[tuple[str, list[_Listed]]]:
-        """Yield the name of each leg with the items of this leg; a single line is one group."""
+        """Yield the name of each leg and the list of items in this leg.
+
+        For a single line, yield the empty name and all items. The function `index` returns the
+        index of the piece to which an item belongs.
+        """
         for name, group in groupby(items, key=lambda one: self.leg(index(one))):
             yield name, [*group]
 
@@ -174,7 +179,8 @@ def deck_of(
 
     Parameters
     ----------
-    moorings : the mooring in each environment, that of the sheets first, with equal cut lengths
+    moorings : the mooring in each environment, with equal cut lengths; the sheets are made for the
+        environment of the first
     ship_speed, streamed, course : inputs of `calm.drop.drop_plan` [m/s], [m], [degrees]
 
     Raises
@@ -242,13 +248,17 @@ def deck_of(
 
 
 def _deck_times(file: MooringFile) -> Mapping[str, float] | None:
-    """Return the handling time of a piece [s] by role, or None if unspecified."""
+    """Return the handling time of one piece [s] for each role, or None if unspecified."""
     given = None if file.document is None else file.document.deck_time
     return None if given is None else {str(role): time for role, time in given.items()}
 
 
 def _solved(mooring: Design, notes: list[str]) -> Result:
-    """Solve the mooring, in a weak current if a single line is slack in still water."""
+    """Solve the mooring.
+
+    A single line that is slack in still water is solved in a weak current instead. In that case, a
+    note is added to `notes`.
+    """
     try:
         return mooring.solve()
     except NoEquilibrium as failure:
@@ -277,8 +287,8 @@ def surfacing(
 ) -> tuple[RecoveredItem, ...]:
     """List the rising parts in order of surfacing, followed by the parts that stay below.
 
-    Without a `recovery`, the times are None and the parts are in line order. `pieces` contains the
-    indices of the pieces that rise.
+    `pieces` contains the indices of the pieces that rise. If `recovery` is None, the parts are
+    listed in line order, and their times are None.
     """
     rising = [one for one in parts if one.index in pieces]
     if recovery is None:

@@ -36,8 +36,8 @@ class DeckItem:
     tilt : tilt from the vertical [degrees]
     tension : maximum tension in a piece [N]
     serial : serial numbers in the design, separated by commas
-    deployed_serial, remark : serial numbers (by default, those in the design) and remark in
-        `deployed`
+    deployed_serial : serial numbers in `deployed`; by default, the serial numbers in the design
+    remark : remark in `deployed`
     apart : whether connecting hardware is drawn in a separate row because of the design check
     """
 
@@ -69,19 +69,20 @@ class DeckItem:
 
     @property
     def serials(self) -> tuple[str, ...]:
-        """Serial numbers as designed."""
+        """Serial numbers in the design, as a tuple."""
         return self.part.serials
 
     @property
     def planned_depth(self) -> float | None:
-        """Planned depth in still water [m], or None if there is none."""
+        """Planned depth in still water [m], or None if no depth is planned."""
         return self.part.planned_depth
 
     @property
     def hardware(self) -> str:
         """Short name of a connector, such as `13 mm shackle`.
 
-        The size is written as in the full name, if the full name begins with a size.
+        The size is copied from the full name if the full name begins with a size. Otherwise, the
+        size in the component id is used, in mm.
         """
         sized = _SIZED.fullmatch(self.part.use)
         if sized is None:
@@ -156,7 +157,8 @@ class DeckRow:
     ----------
     items : consecutive equal pieces or clamps
     floats : equal floats clamped on the cable or chain in `items`
-    between, after : hardware between the items, and after the last item
+    between : connecting hardware between the items
+    after : connecting hardware below the last item
     """
 
     items: tuple[DeckItem, ...]
@@ -191,15 +193,19 @@ class DeckRow:
 
     @property
     def name(self) -> str:
-        """Names of the items with their counts. For a chain with floats: name of the floats."""
+        """Names of the items with their counts.
+
+        For a chain with floats, this is the name and the number of the floats.
+        """
         floats = f"{len(self.floats)} × " if len(self.floats) > 1 else ""
         return floats + self.floats[0].name if self.floats else name_of_run(self.items)
 
     @property
     def cluster(self) -> tuple[object, ...]:
-        """Key for joining chains with floats: consecutive rows with the same key are joined.
+        """Key that is equal for similar chains with equal floats.
 
-        The key is empty for other items.
+        Consecutive rows with the same key are joined into one row. The key is empty for a row that
+        must not be joined.
         """
         if not self.floats or any(one._has_own_data for one in (*self.items, *self.floats)):
             return ()
@@ -225,8 +231,9 @@ def hardware_text(joints: Iterable[DeckItem]) -> str:
 def printed_rows(items: Sequence[DeckItem], *, drawn: bool = False) -> tuple[DeckRow, ...]:
     """Group consecutive items into printed rows, in line order.
 
-    In a list, the hardware below a piece shares the row of the piece. In a drawing (`drawn`),
-    hardware follows the clamps, and hardware marked as `apart` has a separate row.
+    In a list, the row of a piece contains the connecting hardware below the piece. In a drawing
+    (`drawn`), the hardware is in the row of the last clamp on the piece instead. Hardware marked as
+    `apart` has a separate row in a drawing.
     """
 
     def is_joint(one: DeckItem) -> bool:
@@ -267,7 +274,10 @@ def _joined_clusters(rows: Sequence[DeckRow]) -> Iterator[DeckRow]:
 
 
 def _lies_on(run: tuple[DeckItem, ...], row: DeckRow, items: Sequence[DeckItem]) -> bool:
-    """Return whether `run` contains all clamps on the last piece of `row`, all equal floats."""
+    """Return whether the clamps in `run` may share the row of the piece that carries them.
+
+    The clamps must be equal floats, and must be all clamps on the last piece of `row`.
+    """
     first = run[0]
     if first.role != "float" or first.on is None or first.kind == (first.label,):
         return False
@@ -281,7 +291,7 @@ def label_of_run(items: Sequence[DeckItem]) -> str:
 
 
 def name_of_run(items: Sequence[DeckItem]) -> str:
-    """Format the name of an item, or the number of items with each name."""
+    """Format the name of a single item, or the names of several items with their counts."""
     counts = Counter(item.name for item in items)
     if len(items) == 1:
         return items[0].name
@@ -289,9 +299,10 @@ def name_of_run(items: Sequence[DeckItem]) -> str:
 
 
 def standing_out(findings: Iterable[Finding]) -> frozenset[str]:
-    """Return the labels of parts that are drawn separately because of the design check.
+    """Return the labels of the parts that a drawing shows in a separate row.
 
-    These parts have an open finding, or govern a rule with a utilisation above `SHOWN_USE`.
+    Each of these parts has an open finding in the design check, or has the highest utilisation of a
+    rule. In the second case, the utilisation is above `SHOWN_USE`.
     """
     every = [*findings]
     found = {one.component for one in governing_of_each_rule(every)
@@ -303,7 +314,10 @@ def standing_out(findings: Iterable[Finding]) -> frozenset[str]:
 
 
 SHOWN_USE = 0.4999
-"""Utilisation above which the piece that governs a rule has a separate row."""
+"""Utilisation above which a part is drawn in a separate row.
+
+Only the part with the highest utilisation of a rule is compared with this value.
+"""
 
 
 def deck_items_of(result: AnyResult, apart: Collection[str] = ()) -> tuple[DeckItem, ...]:

@@ -21,7 +21,7 @@ from calm.solve import expect_many
 LENGTH_ERROR = 0.005
 """Relative error of a cut length.
 
-The value is the default tolerance, and the error whose effect on depth is reported.
+This is the default tolerance. The deck sheets also give the effect of this error on depth.
 """
 
 ORDINARY = 20
@@ -55,8 +55,8 @@ class Cut:
     tolerance : allowed error of the length [m]
     effect : increase in depth of the top if the piece is longer by the fraction `LENGTH_ERROR` [m];
         None without an equilibrium
-    over, onto : number of a wire or rope in the order of deployment, and in the reverse order of
-        spooling; None for a chain
+    over : place of a wire or rope in the order of deployment, from 1; None for a chain
+    onto : place of a wire or rope in the order of spooling onto the drum, from 1; None for a chain
     """
 
     item: DeckItem
@@ -124,7 +124,7 @@ def _cut(result: Result, one: DeckItem, over: int | None, count: int) -> Cut:
 
 
 def _effect(result: Result, index: int, length: float) -> float | None:
-    """Compute the increase in depth of the top if one piece is longer by `LENGTH_ERROR` [m].
+    """Return the increase in depth of the top [m] if one piece is 0.5 % longer.
 
     The result is None if the longer line has no equilibrium.
     """
@@ -151,7 +151,10 @@ _KINDS = {
     "rings": r"\bring\b",
     "links": r"\blink\b|\bpear\b|\bsling\b|hammerlock",
 }
-"""Kinds of hardware by words in id, name and label. The first match applies."""
+"""Kinds of hardware, with a pattern for each.
+
+The first pattern that occurs in the id, name or label of a component determines its kind.
+"""
 _OTHER, _CHAIN = "other connectors", "chains"
 ORDER = ("shackles", "pins", "cotter pins", *(kind for kind in _KINDS if kind not in
          ("shackles", "cotter pins")), _CHAIN, _OTHER)  # fmt: skip
@@ -160,12 +163,13 @@ _SMALL = frozenset({"shackles", "pins", "cotter pins", "thimbles"})
 
 @dataclass(frozen=True)
 class Stock:
-    """Number of connectors or accessories of one component that a line needs.
+    """Row of the hardware list: number of equal connectors or accessories that a mooring needs.
 
     Attributes
     ----------
-    kind : a member of `ORDER`
-    use, name : id and name of the component; accessories have only a name
+    kind : kind of hardware, which is one of the texts in `ORDER`
+    use : id of the component; empty for an accessory without a component
+    name : name of the component or accessory
     length : total length of chains [m]
     basis : method of counting accessories
     """
@@ -275,8 +279,8 @@ class ShippedComponent:
 
     Attributes
     ----------
-    count, units : number of items, and number of units in these items, such as 2 per pair of
-        releases
+    count : number of pieces and clamps with this component
+    units : number of individual units; for example, a pair of releases has 2 units
     length : total length of cable or chain [m]
     mass, volume : totals of the known masses in air [kg] and volumes without packing [m³]
     missing_masses, missing_volumes : numbers of unknown masses and volumes, which the totals omit

@@ -1,4 +1,4 @@
-"""Component catalogue from several levels: shipped, user's own, given files, and the mooring file.
+"""Component catalogue in levels: mooring file, given files, the user's folder, and shipped files.
 
 Definitions are kept as text and validated on first use.
 """
@@ -98,7 +98,10 @@ class Catalogue:
         return Catalogue(({entry.id: entry for entry in entries}, *self.levels))
 
     def _completed(self, entry: CatalogueEntry) -> CatalogueEntry:
-        """Merge an entry without `kind` with the definition of the same id in this catalogue."""
+        """Add missing keys to an entry that has no `kind`.
+
+        The keys are taken from the definition with the same id in this catalogue.
+        """
         below = self.entry(entry.id)
         given = {key: value for key, value in entry.section.data.items() if value is not None}
         section = entry.section.holding(given)
@@ -118,7 +121,10 @@ class Catalogue:
         return next(self._of(id), None)
 
     def hidden(self, id: str) -> CatalogueEntry | None:
-        """Return the second definition of an id, which the first definition hides, or None."""
+        """Return the next definition of an id below the definition in use.
+
+        Return None if the id has only one definition.
+        """
         return next(islice(self._of(id), 1, None), None)
 
     def _of(self, id: str) -> Iterator[CatalogueEntry]:
@@ -180,9 +186,9 @@ class Catalogue:
         return found
 
     def same_thing(self, id: str) -> list[str]:
-        """Return the ids of all definitions of the same product as `id`, the preferred id first.
+        """Return the ids of all definitions of the product that `id` defines.
 
-        All definitions of a product give the same preferred id under `prefer`.
+        The preferred id is the first. The other definitions contain this id in the key `prefer`.
         """
         preferred = {each: entry.section.data.get("prefer") for each, entry in self._all().items()}
         first = preferred.get(id) or id
@@ -211,14 +217,14 @@ def define(
     also_allowed: Iterable[str] = (),
     context: Mapping[str, object] | None = None,
 ) -> Defined | None:
-    """Validate a definition, with any overrides; return the component that it defines.
+    """Validate a definition; return the component that it defines.
 
-    Return None if the definition has mistakes, which are recorded in `section`.
+    Return None if the definition has mistakes. The mistakes are recorded in `section`.
 
     Parameters
     ----------
-    section : section of the entry, or overrides based on it
-    also_allowed : keys that messages about an unknown key may suggest, besides those of the kind
+    section : section of the entry, or a mapping of overrides that has this section as its base
+    also_allowed : additional keys that messages about an unknown key may suggest
     context : `IN_AIR` for a component used in air, otherwise None
     """
     kind = section.data.get("kind")
@@ -363,9 +369,10 @@ def _entries_of(document: Document, problems: list[Problem]) -> list[CatalogueEn
 
 
 def _cuts(path: Path) -> Iterator[tuple[str | None, str]]:
-    """Yield id and text of each definition; the id is None if it cannot be recognised.
+    """Yield the id and the text of each definition in a file.
 
-    Empty lines before the text keep the line numbers of the file.
+    The id is None if it cannot be recognised. Empty lines are put before each text, so that line
+    numbers in the text equal those in the file.
     """
     text = read_text(path)
     heads, above, end = list(_HEAD.finditer(text)), 0, 0
@@ -381,7 +388,7 @@ _LOADED: FileCache[Catalogue] = FileCache()
 def defined(id: str, values: Mapping[str, Any]) -> tuple[Component | None, tuple[Problem, ...]]:
     """Build a component from its values; return the component and any mistakes in the values.
 
-    The component is None if there are mistakes, or for an assembly or outline.
+    The component is None if the values have mistakes, or if they define an assembly or outline.
     """
     problems: list[Problem] = []
     section = SourceMapping.of(Document(id, {id: dict(values)}), problems).child(id)
@@ -392,7 +399,10 @@ def defined(id: str, values: Mapping[str, Any]) -> tuple[Component | None, tuple
 _LETTERS = str.maketrans(
     {"ø": "o", "æ": "ae", "œ": "oe", "đ": "d", "ð": "d", "þ": "th", "ł": "l", "ı": "i", "⁄": "-"}
 )
-"""ASCII replacements for letters, and for the fraction slash, that Unicode does not decompose."""
+"""ASCII replacements for letters such as ø, and for the fraction slash.
+
+Unicode normalisation does not split these letters into a plain letter and an accent.
+"""
 
 
 def tidy_id(text: str) -> str:

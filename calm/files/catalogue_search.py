@@ -30,8 +30,9 @@ _SIZE = re.compile(
 )
 """Pattern of a number with its unit; a fraction without a unit is in inches."""
 _OF_A_SIZE = 0.02
-"""Relative difference up to which sizes are treated as equal, such as rounded millimetres and
-inches.
+"""Relative difference up to which two sizes are treated as equal.
+
+Sizes in millimetres and in inches are often rounded.
 """
 _USE_KEY = re.compile(r"\buse: *([\w-]+)")
 _MIN_SIMILARITY = 0.8
@@ -123,8 +124,9 @@ class WordIndex:
     def suggested(self, text: str, near: str | None) -> list[str]:
         """Return up to three suggested ids for a text that is not an id.
 
-        `near` is the id with the most similar spelling. It is the only suggestion for a text with a
-        digit, which usually belongs to a size, or if no component contains every word.
+        `near` is the id with the most similar spelling, or None. Only `near` is suggested for a
+        text with a digit, because the digit usually belongs to a size. Only `near` is also
+        suggested if no component contains every word.
         """
         if near and any(map(str.isdigit, text)):
             return [near]
@@ -149,7 +151,8 @@ class WordIndex:
         ----------
         text : words and limits, separated by blanks
         kinds : kinds of components to search; by default all
-        first : ids to list first, in this order; only exact matches precede them
+        first : ids to list first, in this order; exact matches precede them, and ids that do not
+            contain all words do not move up
         by : key of the column that sorts the result, largest magnitude first; by default the best
             matches come first
         """
@@ -194,7 +197,7 @@ class WordIndex:
     ) -> list[Listed]:
         """Sort components: exact ids, then ids in `first`, then by `_rank`.
 
-        A match by a synonym or the source does not move up by `first`.
+        An id in `first` moves up only if it contains all words of the search.
         """
         places = {id: number for number, id in enumerate(first)}
 
@@ -237,7 +240,7 @@ class Term:
     size: float | None = None
 
     def matches(self, each: Listed) -> bool:
-        """True if a component has the size or contains the words."""
+        """True if a component has the size of this term, or contains all words of this term."""
         size = self.size
         if size is not None and any(abs(one - size) <= _OF_A_SIZE * size for one in each.sizes):
             return True
@@ -278,7 +281,7 @@ def _uses() -> Counter[str]:
 def _rank(each: Listed, words: Sequence[str], others: Sequence[str]) -> int:
     """Return the rank of a match: 0 for the exact id, more for a worse match.
 
-    `others` are the words without sizes.
+    `words` are the words of the search. `others` are those words that do not belong to a size.
     """
     if not words:
         return 0

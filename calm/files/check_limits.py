@@ -17,7 +17,10 @@ from calm.files.yaml_document import SourceMapping
 
 _FACTOR = definition.QuantityField("number", above=0)
 _SAFETY = definition.QuantityField("number", at_least=1)
-"""A safety factor, at least 1: smaller factors would pass broken pieces and lifted anchors."""
+"""Allowed values of a safety factor.
+
+With a factor below 1, the check would accept broken pieces and lifted anchors.
+"""
 _FRICTION = definition.QuantityField("number", above=0, at_most=1)
 _SHARE = definition.QuantityField("number", at_least=0, at_most=1)
 _SPEED = definition.QuantityField("speed", at_least=0)
@@ -34,7 +37,7 @@ class Limit:
     Attributes
     ----------
     source : source of the default; `THE_DESIGN` without a default
-    default : default [SI, degrees], if the model gives none
+    default : default limit [SI, degrees], if the default of the key itself is None
     """
 
     source: str = THIS_PROGRAM
@@ -176,7 +179,7 @@ LENIENT_IF_LESS = (
     *("weight", "diameter", "cn", "ct", "cx", "cd", "drag_area", "kn", "kt"),
     *("k_surface", "wind_area", "wind_cd"),
 )
-"""Component keys for which a smaller value makes the check more lenient, except for anchors."""
+"""Keys for which a smaller value makes the check more lenient, in components but anchors."""
 
 
 @dataclass(frozen=True)
@@ -189,7 +192,7 @@ class LimitKey:
     dimension : dimension, as in `calm.units`
     value : limit in use [SI, degrees]; None if there is no limit
     default : default [SI, degrees]; None without a default
-    backed : False if an item of the line sets the limit without a source
+    backed : False if an item of the line sets the limit but gives no source for the value
     share : whether the value is displayed in percent
     """
 

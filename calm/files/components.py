@@ -330,7 +330,10 @@ class Outline(definition.Definition):
 
 
 def lacking(fields: Mapping[str, Any]) -> list[str]:
-    """Return the missing required keys that `searched` lists as unpublished."""
+    """Return the required keys that are missing because no value is published.
+
+    The key `searched` of a component lists the keys without a published value.
+    """
     searched = fields.get("searched")
     known = searched if isinstance(searched, list | tuple) else ()
     return [
@@ -357,6 +360,8 @@ def contradicted(kind: str, base: Set[str], override: Set[str]) -> frozenset[str
     cable           `elongation`                 `stiffness`
     chain, anchor   `mass` or `density`          `weight`
     =============== ============================ =====================================
+
+    In this table, a key is known if the definition or the override gives it.
     """
     known = base | override
     void: set[str] = set()

@@ -87,7 +87,10 @@ def compose(text: str) -> Composition:
 
 
 def _is_read_differently(text: str) -> bool:
-    """True if the two parsers may read the tabs, byte-order marks or tags of a text differently."""
+    """True if libyaml and the Python parser may read a text differently.
+
+    They differ for some tabs, byte-order marks and tags.
+    """
     return "\t" in text or "\ufeff" in text or ("!" in text and _TAG.search(text) is not None)
 
 
@@ -209,7 +212,7 @@ class _Reader:
         return values, event
 
     def _refused(self, event: events.NodeEvent, depth: int, message: str = "") -> Node:
-        """Skip a node without reporting problems inside it; report `message` instead, if given."""
+        """Skip a node. Report `message`, if given, but no problems inside the node."""
         before = len(self._refusals)
         node = self._node(event, depth)
         self._refusals[before:] = [_refusal(event, message)] if message else []

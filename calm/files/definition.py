@@ -79,7 +79,7 @@ class QuantityField(QuantityRange):
 
 
 class ColumnHeading(str):
-    """Annotation that gives a value in a table row its column heading for display."""
+    """Annotation that contains the displayed column heading of a value in a table row."""
 
     __slots__ = ()
 
@@ -148,10 +148,10 @@ STANDARD_GRAVITY = KILOGRAM_FORCE
 """Standard gravity [m/s²], for the weight of a given mass."""
 
 DISAGREEMENT = 0.01
-"""Relative difference allowed between redundant values."""
+"""Relative difference up to which redundant values of a component count as consistent."""
 
 IN_AIR: Mapping[str, object] = {"fluid": "air"}
-"""Context for definitions used in air, which only need a mass."""
+"""Validation context for a component that is used in air; the component only needs a mass."""
 
 MASS = QuantityField("mass", at_least=0)
 DENSITY = QuantityField("density", above=0)

@@ -51,7 +51,7 @@ class SeabedKeys(Model):
     )
 
     def at(self, east: float, north: float) -> SeabedKeys:
-        """Return the plane seabed unchanged; its slope is the same at all reference points."""
+        """Return this seabed for another reference point; a plane has the same slope everywhere."""
         return self
 
     @property
@@ -265,8 +265,8 @@ def read_environment(
     notices : list to which remarks are added
     towed : whether air, or an unknown water depth, is allowed
     position : position used to select a current profile and to place a seabed grid
-    open_files : whether to read other files; without them, an environment with a current file is
-        only checked, and None is returned
+    open_files : whether to read other files; if False, an environment with a current file is only
+        checked, and the result is None
     """
     keys = validate(TowEnvironmentKeys if towed else EnvironmentKeys, section)
     if keys is None:

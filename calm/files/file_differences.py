@@ -91,7 +91,7 @@ _DIMENSIONS = {
     "density": "density",
     "maximum_speed": "speed",
 }
-"""Dimensions of fields without an annotation in their model."""
+"""Dimensions of those fields that have no `QuantityField` in their model, by field name."""
 
 
 def differences(before: MooringFile, after: MooringFile) -> Differences:
@@ -145,10 +145,11 @@ def _known_pieces(pieces: Sequence[Piece]) -> list[Known]:
 def _known_clamps(
     clamps: Sequence[tuple[int, Clamp]], partner: Mapping[int, int] | None
 ) -> list[Known]:
-    """Return the contents of clamps, by which clamps on matched pieces match first.
+    """Return the labels of clamps, and the keys by which clamps are matched.
 
-    `partner` maps the pieces of the first line to their matches. For the clamps of the second line,
-    `partner` is None.
+    With these keys, clamps on matched pieces are matched first. `partner` maps each piece of the
+    first line to the matched piece of the second line. For clamps of the second line, `partner` is
+    None.
     """
     labels = own_labels([clamp.label for _, clamp in clamps])
     known = []
@@ -280,9 +281,12 @@ _NUMBERED = re.compile(r"(.+) ([1-9]\d*)")
 
 @dataclass(frozen=True)
 class Known:
-    """A part to be matched: its label without an added number, and its content.
+    """A part to be matched with a part of another line.
 
-    Parts match if a key in `contents` is equal; the strictest key comes first.
+    Attributes
+    ----------
+    label : label of the part, without the number that `numbered` adds to repeated labels
+    contents : keys for matching, the strictest first; two parts match if one of the keys is equal
     """
 
     label: str
@@ -361,10 +365,13 @@ def _pair_between(
     key: int,
     pairs: dict[int, int],
 ) -> None:
-    """Match parts with equal keys, in order, between two neighbouring matched parts.
+    """Match parts that have equal keys and the same order in both lines.
 
-    Matches are added to `pairs`, and removed from the indices `left` and `right`. `key` is the
-    index of the key in the contents.
+    Parameters
+    ----------
+    left, right : indices of the unmatched parts of each line; new matches are removed
+    key : index in `Known.contents` of the key to compare
+    pairs : matched indices, to which new matches are added
     """
     if not left or not right:
         return

@@ -82,7 +82,7 @@ class LengthAt(definition.Model):
 ASSEMBLY_FIGURES = (
     "working_load", "breaking_load", "opening_load", "grip", "max_tilt", "depth_rating"
 )  # fmt: skip
-"""Values of an assembly that apply to each of its parts that has no value of its own."""
+"""Values of an assembly that are used for every part without a value of its own."""
 MOST_PIECES = 10_000
 """Maximum number of pieces in a line, after expansion of assemblies and counts."""
 

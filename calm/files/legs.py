@@ -143,9 +143,12 @@ class FileLeg:
     bottom: EndKeys
 
     def grown(self, index: int, more: int) -> FileLeg:
-        """Return the leg after `more` pieces were inserted below the piece with the given index.
+        """Return a copy of the leg with its indices adjusted to pieces inserted into the line.
 
-        The piece may be in another leg.
+        Parameters
+        ----------
+        index : index of the piece below which the new pieces are inserted, in this leg or another
+        more : number of new pieces
         """
         return replace(
             self,

@@ -26,8 +26,9 @@ _COUNT = QuantityField("number", at_least=1, at_most=MOST_PIECES)
 _ITEM_KEYS = frozenset(item_keys.ItemKeys.model_fields)
 _ASSEMBLY_KEYS = frozenset({"use", "label", "count", "serial"})
 _NUMBERED = (("instrument", "release"), ("float",))
-"""Roles of the parts to which the serial numbers of an assembly refer; the second group is used if
-the assembly has no part of the first group.
+"""Roles of those parts of an assembly that have serial numbers, in two groups.
+
+The second group is used if the assembly has no part with a role in the first group.
 """
 _SOURCE_KEYS = frozenset({"source", "sources"})
 _CLAMP_KEYS = frozenset(item_keys.ClampKeys.model_fields)
@@ -132,7 +133,7 @@ class LineReader:
     def _check_without_kind(self, item: SourceMapping, *, judged: bool) -> None:
         """Check the keys of an item whose component is unknown or has mistakes.
 
-        `judged` means that the keys were already checked with the definition of the component.
+        If `judged` is true, all keys but `length` were already checked with the definition.
         """
         if item.data.get("length", "fit") != "fit":
             self._quantity(item, "length", POSITIVE_LENGTH, "")
@@ -194,7 +195,10 @@ class LineReader:
         )
 
     def _measured(self, item: SourceMapping, component: Flexible) -> tuple[float, float]:
-        """Return the unstretched length [m] of a cable measured under a load, and this load [N]."""
+        """Return the unstretched length [m] of a cable, and the load [N] in `length_at`.
+
+        The file gives the length under this load.
+        """
         if not isinstance(item.data["length_at"], dict):
             example = "{load: 2 kN, length: 480 m}"
             item.refuse(("length_at",), f"`length_at` must have the form `{example}`")
@@ -295,8 +299,9 @@ class LineReader:
     ) -> tuple[Piece, ...]:
         """Distribute the serial numbers of an item over the parts of its assembly.
 
-        The numbers belong to instruments and releases or, if there are none, to floats. The numbers
-        of the first assembly come first.
+        The numbers belong to the instruments and releases of the assembly. They belong to the
+        floats if the assembly has neither. An item with a `count` lists the numbers of one assembly
+        after the other.
         """
         numbers = item_keys.read_equipment(item).serials
         if not numbers:
@@ -340,7 +345,7 @@ class LineReader:
         entry: CatalogueEntry,
         item: SourceMapping,
     ) -> tuple[Piece, ...]:
-        """Set the values of an assembly on those parts that lack them."""
+        """Use the values of an assembly for those parts that have no values of their own."""
         for key in ASSEMBLY_FIGURES:
             value = getattr(assembly, key)
             if value is None:
@@ -444,7 +449,11 @@ class LineReader:
         definition: Component | Outline,
         component: Component,
     ) -> None:
-        """Record overrides that permit more load, depth or buoyancy, or less weight or drag."""
+        """Record overrides by an item that make the design check less strict.
+
+        Such an override increases a permitted load, depth or tilt, or the buoyancy. It may also
+        decrease the weight, the diameter or the drag.
+        """
         loads = () if isinstance(component, Anchor) else LENIENT_IF_LESS
         sourced = item.data.get("sources")
         for key in (*LENIENT_IF_GREATER, *loads):

@@ -90,7 +90,7 @@ class MooringFile:
     notices : remarks for the user, such as discarded levels of a measured current
     variants : named environments before validation
     accepts : accepted findings of the design check
-    looser : limits that an item of the line makes less strict than its component does
+    looser : overrides in the line that make a limit less strict than in the component definition
     document : title block
     units : display units by dimension
     """

@@ -28,7 +28,7 @@ class Place:
     Attributes
     ----------
     item : index of the item in the `line:` of the file
-    repeat : index within the `count` of the item
+    repeat : index of the repetition, if the item has a `count`
     part : index of the piece in an assembly; -1 for a component
     clamp : index of the clamp on the piece; -1 for the piece itself
     """
@@ -249,7 +249,10 @@ def labels_of(pieces: Iterable[Piece]) -> list[str]:
 
 
 def travelling(pieces: Sequence[Piece], top: SourceMapping) -> tuple[Piece, ...]:
-    """Return the pieces with the travel range of each profiler, derived from its two stops."""
+    """Set the travel range of each profiler from the positions of its two stops.
+
+    Return the changed pieces. Mistakes are recorded in `top`.
+    """
     return tuple(piece.with_clamps(partial(_travelling, piece, pieces, top)) for piece in pieces)
 
 

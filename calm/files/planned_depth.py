@@ -46,8 +46,9 @@ _WITH_UNIT = re.compile(
 _AFTER_AT = re.compile(r"(@\s*)(\d{1,3}(?:,\d{3})+|\d+(?:\.\d+)?)()(?![\w.,/])")
 _AT_THE_END = re.compile(r"^(.*)[_-](\d{4})$")
 _ROUND = 50
-"""Four-digit numbers that do not begin with 0 are depths only if they are multiples of this value
-[m], which few serial numbers are.
+"""A four-digit number that does not begin with 0 is a depth only if it is a multiple of this value.
+
+The unit is metres. Few serial numbers are multiples of this value.
 """
 _FOOT = 0.3048
 _LEAST_OF_A_FLOAT = 10.0

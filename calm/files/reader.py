@@ -343,9 +343,10 @@ class EnvironmentFileKeys(Model):
 def choose_environment(
     top: SourceMapping, chosen: str | Path | None, *, towed: bool
 ) -> tuple[SourceMapping, str | None] | None:
-    """Select an environment; return its unvalidated section and its name, or None.
+    """Select an environment; return its unvalidated section, and its name.
 
-    The default environment supplies missing keys of another environment. Mistakes in all
+    The name of the default environment is None. The default environment supplies the missing keys
+    of any other environment. The result is None if there is no such environment. Mistakes in all
     environments of the mooring file are recorded.
 
     Parameters

@@ -14,9 +14,9 @@ class RuleText:
     ----------
     quantity : name of the values in `calm.quantities`; "" for a rule without values
     judges : description of the checked value
-    limit : sentences on the limit, and on findings beyond it
+    limit : sentences that describe the limit, and the finding if the value is beyond the limit
     source : source of the rule and of its default limit
-    unseen : reason why the rule cannot check batch profiles, or ""
+    unseen : reason why the rule cannot check batch profiles; "" if it can
     figures : component keys that the rule needs
     has_ratio : whether the ratio of value and limit is meaningful
     """

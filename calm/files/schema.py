@@ -19,7 +19,7 @@ from calm.files.reader import MooringKeys
 Schema = dict[str, Any]
 
 _NO_FORM = ("description", "examples", "default", "title")
-"""Schema entries of a field that do not restrict its value."""
+"""Keys in the JSON Schema of a field that do not restrict the value of the field."""
 
 
 def mooring_schema() -> Schema:
@@ -87,7 +87,10 @@ def _words_of(form: Schema) -> Schema:
 
 
 def _fields(kinds: Iterable[type[Component]], schemas: Schema) -> Schema:
-    """Merge the fields of all kinds; a field that differs between kinds allows all its forms."""
+    """Merge the schemas of the component fields of all kinds.
+
+    If a field has different schemas in different kinds, any of these schemas is allowed.
+    """
     forms: dict[str, list[Schema]] = {}
     words: dict[str, Schema] = {}
     for kind in kinds:

@@ -39,8 +39,8 @@ class SpreadOf:
 
     Attributes
     ----------
-    one : allowed values of the standard deviation
-    end : allowed values of the 5th and the 95th percentiles
+    one : allowed values of a single number, which is the standard deviation
+    end : allowed values of each number in a pair, which contains the 5th and 95th percentiles
     """
 
     one: QuantityField

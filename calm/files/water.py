@@ -75,12 +75,14 @@ _FALL = 0.1
 overturn.
 """
 _RATIO = 0.05
-"""Lowest plausible salinity of the sea; lower values indicate a lake, or a mass fraction instead of
-g/kg.
+"""Lowest plausible salinity of the sea.
+
+A lower value is that of a lake, or a mass fraction that was written instead of g/kg.
 """
 _WARMEST_BELOW = 30.0
-"""Number that separates temperature [°C] from salinity: few seas have a lower salinity, and none is
-warmer below its surface.
+"""Temperature of the deepest water [°C] above which temperature and salinity may be exchanged.
+
+No sea is warmer than this below its surface, and few seas have a salinity below this number.
 """
 
 
@@ -133,9 +135,10 @@ def quantity_table(table: TableKeys, section: SourceMapping, *place: str) -> Qua
 _LIGHTEST = 990.0
 """Density of fresh water at 45 °C, the lowest density of any mooring's water [kg/m³]."""
 _HEAVIEST = 1040.0, 0.0047
-"""Highest density of sea water at the surface [kg/m³] (Red Sea in winter, 1030 kg/m³, plus a
-margin), and its increase by pressure for each metre [kg/m⁴]: 1050 kg/m³ at 5000 m. Brines are
-heavier.
+"""Highest density of sea water: value at the surface [kg/m³], and increase with depth [kg/m⁴].
+
+The first number is the density of the Red Sea in winter, 1030 kg/m³, plus a margin. The second
+number is the effect of pressure, by which sea water has 1050 kg/m³ at 5000 m. Brines are denser.
 """
 
 

@@ -86,8 +86,9 @@ class WaveKeys(Model):
 def read_waves(keys: WaveKeys, section: SourceMapping, open_files: bool) -> tuple[SeaState, ...]:
     """Read the sea states of `waves:`; return an empty tuple if there are mistakes.
 
-    A sea state in a scatter table has its share of time. An additional design sea state has the
-    share 0. Without `open_files`, the result is empty.
+    Each sea state from a scatter table contains the fraction of time in which it occurs. The
+    fraction of a design sea state is 0 if a scatter table is also given, and 1 otherwise. If
+    `open_files` is False, the result is empty.
     """
     before = len(section.problems)
     measured = keys.spectrum not in SPECTRA

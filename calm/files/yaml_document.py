@@ -30,7 +30,7 @@ class Document:
     ----------
     path : path as shown in messages
     data : mappings, lists, text and None
-    root : top-level node; None if the data have no text
+    root : top-level node; None if the data were not read from a text
     """
 
     path: str
@@ -40,14 +40,15 @@ class Document:
     def problem(
         self, location: Sequence[str | int], message: str, *, key: bool = False, lacks: str = ""
     ) -> Problem:
-        """Create a problem at the position of a value, or of its key if the value is empty.
+        """Create a problem at the position of a value.
 
-        A problem with a missing value is placed at the nearest enclosing value.
+        If the value is empty, the position of its key is used. If the location does not exist, the
+        position of the nearest enclosing value is used.
 
         Parameters
         ----------
-        key : whether to use the position of the key in any case
-        lacks : name of the missing part, if the file is incomplete but not wrong
+        key : whether to use the position of the key even if the value is not empty
+        lacks : name of the part that is missing in an incomplete file; "" for a mistake
         """
         node = place = self.root
         for step in location:
@@ -95,9 +96,10 @@ class SourceMapping:
 
     Attributes
     ----------
-    document, location : origin of the mapping itself, not of its base
+    document, location : document that contains this mapping, and place of the mapping in it; the
+        base may be elsewhere
     data : keys and values, including those of the base
-    own : keys of the mapping itself
+    own : keys of this mapping without those of the base
     problems : list of mistakes, common to all mappings of a file
     """
 
@@ -114,7 +116,7 @@ class SourceMapping:
         return cls(document, (), document.data, None, frozenset(document.data), problems)
 
     def holding(self, data: dict[str, Any]) -> SourceMapping:
-        """Return a mapping with other data at the same location in the document."""
+        """Return a mapping of the given data, without a base, at the location of this mapping."""
         own = frozenset(data)
         return SourceMapping(self.document, self.location, data, None, own, self.problems)
 
@@ -177,7 +179,7 @@ def validate(
 
     Parameters
     ----------
-    also_allowed : keys that messages about an unknown key may suggest, besides those of the model
+    also_allowed : additional keys that messages about an unknown key may suggest
     context : context for the validators of the model
     """
     try:
@@ -245,9 +247,9 @@ def _explain(
 
 
 def _existing(data: Any, loc: tuple[int | str, ...]) -> tuple[Location, Any]:
-    """Return the part of a location that exists in the data, and the value there.
+    """Convert a location from pydantic to a location in the data; also return the value there.
 
-    Tags of unions, which pydantic adds to locations, are omitted.
+    Steps that do not exist in the data are omitted, such as the tags that pydantic adds for unions.
     """
     location: list[str | int] = []
     for part in loc:
@@ -345,7 +347,10 @@ def _flow(value: object) -> str:
 
 
 def _form(model: type[BaseModel], loc: tuple[int | str, ...]) -> Any:
-    """Return the type that a model declares for a location, which may contain tags of unions."""
+    """Return the declared type of the value at a location in a model.
+
+    The location may contain the tags that pydantic adds for unions.
+    """
     form: Any = model
     for part in loc:
         models = _models_in(form)

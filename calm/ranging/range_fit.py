@@ -23,7 +23,7 @@ from calm.ranging.ranges import Sound, Survey, read_ranges
 
 CONFIDENCE = 0.95
 MISSED = 0.25
-"""Median residual, relative to the median range, above which the fit is rejected."""
+"""Median absolute residual above which the fit is rejected, as a fraction of the median range."""
 SCATTERED, SCATTERED_SHARE = 10.0, 0.005
 """Largest usual scatter of ranges: a constant [m] plus a fraction of the median range."""
 LEVEL = 0.05
@@ -35,12 +35,12 @@ FALL_BACK, LEAST_FALL_BACK = 0.1, 50.0
 the depth, and minimum [m].
 """
 ODDS = 20.0
-"""Minimum odds for choosing one of two positions."""
+"""Odds in favour of the more likely of two positions, below which the choice is doubtful."""
 
 
 @dataclass(frozen=True)
 class SecondPlace:
-    """Second position that fits the ranges nearly as well.
+    """Second position that fits the ranges nearly as well as the chosen position.
 
     Attributes
     ----------
@@ -247,14 +247,16 @@ def _more_likely(
     near: tuple[float, float] | None,
     scattered: float,
 ) -> tuple[Floats, Floats | None, str]:
-    """Choose the more likely of two positions, if possible by the planned position.
+    """Choose the more likely of two positions that fit the ranges.
 
-    The residuals (standard deviation `scattered` [m]) and the distance from the planned position
-    are assumed to be normal.
+    The choice depends on the residuals and on the distance from the planned position. Both are
+    assumed to be normal; `scattered` is the standard deviation of the residuals [m]. Without a
+    planned position, the first position is chosen.
 
     Returns
     -------
-    The more likely position, the other position, and the reason why the choice is doubtful, or "".
+    The more likely position, the other position, and the reason why the choice is doubtful. The
+    reason is "" for a clear choice.
     """
     if other is None:
         return x, None, ""
@@ -297,9 +299,10 @@ def _residual_deviation(residuals: Floats, freedom: int) -> float:
 def _intervals(
     jacobian: Floats, rms: float, freedom: int, depth_given: bool, farthest: float
 ) -> tuple[float, float, float, float]:
-    """Return semi-axes [m] and bearing [degrees] of the 95 % ellipse, and depth interval [m].
+    """Return semi-axes [m] and bearing [degrees] of the 95 % ellipse, and uncertainty of depth [m].
 
-    The depth interval is half of the 95 % interval. Intervals wider than the longest range are NaN.
+    The uncertainty of depth is half of the 95 % interval. Values larger than the longest range,
+    `farthest` [m], are replaced by NaN.
     """
     from scipy.stats import chi2, norm
     from scipy.stats import f as fisher
@@ -334,8 +337,9 @@ def _intervals(
 FAR = 2.0
 """Distance from the planned position, in water depths, above which the position is doubtful."""
 NEAR = 0.5
-"""Reading 48.18 as 48°18′ is suggested if it reduces the distance from the planned position to at
-most this fraction.
+"""Fraction of the distance from the planned position.
+
+If reading 48.18 as 48°18′ reduces the distance to this fraction or less, this reading is suggested.
 """
 DEEPER, DEEPER_SHARE = 30.0, 0.03
 """Difference from the planned depth above which the depth is doubtful: the larger of a value [m]
@@ -372,8 +376,8 @@ def with_deployed(
 
     Returns
     -------
-    The mooring file, its new text, sentences on the deviation from the planned position, and
-    doubts.
+    The mooring file, the new text of this file, sentences on the deviation from the planned
+    position, and reasons to doubt the position.
 
     Raises
     ------
@@ -401,7 +405,10 @@ def with_deployed(
 def _plan_deviation(
     file: MooringFile, located: Located, water_depth: float
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Return sentences on the deviation from the planned position and depth, and doubts."""
+    """Return sentences on the deviation from the planned position and depth.
+
+    Also return the reasons to doubt the position.
+    """
     planned, plan_depth = file.position, file.environment.depth
     assert plan_depth is not None  # a mooring always has a water depth
     deeper = water_depth - plan_depth

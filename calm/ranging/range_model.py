@@ -1,6 +1,7 @@
 """Model of acoustic ranges: computed ranges, robust fit, and rejection of outliers.
 
-Outliers are rejected by Student's t-test, with a probability of 1 % for any false rejection.
+Outliers are rejected by Student's t-test. In a survey without outliers, the probability that the
+first test rejects a range is at most 1 %.
 """
 
 from collections.abc import Iterator
@@ -15,7 +16,7 @@ from calm.positions import Frame
 from calm.ranging.ranges import Sound, Survey
 
 BY_CHANCE = 0.01
-"""Probability of rejecting a range from a survey without outliers."""
+"""Error probability of the test for outliers, and of the test for a factor common to all ranges."""
 FLOOR = 2.0
 """Minimum scatter of ranges [m], because the ship's antenna is some metres from its transducer, and
 both move while the sound travels."""
@@ -46,9 +47,10 @@ class RangeModel:
         return 2 if self.depth is not None else 3
 
     def place(self, x: Floats) -> Floats:
-        """Return the position (3,) that belongs to values `x` of the unknowns [m].
+        """Return the position (3,) for the values `x` of the unknowns [m].
 
-        A given depth is measured from the curved sea surface.
+        If the depth of the transponder is given, it is converted to a height in the local frame,
+        including the curvature of the sea surface.
         """
         if self.depth is None:
             return x
@@ -120,7 +122,11 @@ class RangeModel:
         return min(found, key=lambda each: each[0])[1]
 
     def _start_positions(self) -> list[Floats]:
-        """Return starting positions: below the middle of the survey, and on its four sides."""
+        """Return five starting values of the unknowns for the fit.
+
+        One position is below the middle of the survey. The others are displaced from it, in both
+        directions along and across the survey.
+        """
         middle = self.ships.mean(axis=0)
         _, _, axes = np.linalg.svd((self.ships - middle)[:, :2], full_matrices=True)
         reach = float(np.median(self.measured(np.array([0.0, 0.0, -1000.0])[: self.unknowns])))
@@ -131,7 +137,10 @@ class RangeModel:
         return starts
 
     def _below(self, x: Floats) -> Floats:
-        """Replace a position above the ship by its mirror image below the ship."""
+        """Return the unknowns of a position below the ship.
+
+        A position above the ship is reflected about the depth of the transducer.
+        """
         if self.depth is None:
             level = float(self.ships[:, 2].mean())
             x = np.array([x[0], x[1], min(x[2], 2.0 * level - x[2])])
@@ -148,7 +157,9 @@ class RangeModel:
         return self._below(fit.x)
 
     def tested(self, x: Floats, used: Booleans) -> Booleans:
-        """Reject the worst outlier, or restore a rejected range that fits; return the new mask.
+        """Reject the worst outlier, or restore a rejected range that fits.
+
+        Return the new mask of the ranges in use.
 
         Each residual is compared with its standard error, estimated from the other ranges in use.
         """
@@ -226,7 +237,9 @@ class RangeModel:
         return [f"{text}: were they taken with another speed of sound?"]
 
     def another_place(self, x: Floats, used: Booleans, scatter: float) -> Floats | None:
-        """Find another position that fits the ranges nearly as well, or return None.
+        """Find another position that fits the ranges nearly as well as the fitted position `x`.
+
+        Return None if there is no such position.
 
         Parameters
         ----------
@@ -274,7 +287,10 @@ def _doubling_error(timed: bool, factor: float) -> str:
 NARROW = 0.15
 """Ratio of width to length below which a track counts as a straight line."""
 WIDEST_GAP = 180.0
-"""Sector without a range above which all ranges count as taken from one side [degrees]."""
+"""Angle of a sector without ranges, seen from the transponder [degrees].
+
+If the sector is wider than this, all ranges count as taken from one side.
+"""
 NEAR, FAR = 0.2, 4.0
 """Horizontal distances, as multiples of the depth. Ranges that are all nearer constrain the
 position poorly; ranges that are all farther constrain the depth poorly.

@@ -4,8 +4,9 @@ The usual form is CSV with a header. Column names of deck boxes and event logs a
 degrees and minutes in two columns. Two formats have no column headings:
 
 - WHOI, five columns: degrees and minutes of latitude and of longitude, and one-way time [s].
-- NOC, three columns: range, latitude and longitude. Above the ranges are three rows: the target
-  (optional); water depth, height of the release and depth of the transducer; the drop position.
+- NOC, three columns: range, latitude and longitude. The rows above the ranges contain the target
+  position (optional), the depths, and the drop position, in this order. The depths are water depth,
+  height of the release and depth of the transducer.
 """
 
 from __future__ import annotations
@@ -66,7 +67,7 @@ class Survey:
 
 
 def read_ranges(path: Path, transducer: float = 0.0, hemisphere: str = "") -> Survey:
-    """Read the acoustic ranges in a file, without blank and repeated rows.
+    """Read the acoustic ranges in a file. Blank rows and repeated rows are omitted.
 
     Parameters
     ----------
@@ -199,7 +200,10 @@ def _position_problems(path: Path, values: list[tuple[int, float, float, float]]
 
 
 SLOWEST, FASTEST = 1380.0, 1680.0
-"""Speed of sound in natural waters [m/s]: near-freezing fresh water, deepest trench."""
+"""Lowest and highest speed of sound in natural waters [m/s].
+
+The lowest speed occurs in fresh water near freezing, and the highest in the deepest trench.
+"""
 _OF_SOUND = {"depth": "length", "sound_speed": "speed"}
 _EXAMPLE = "depth[m],sound_speed[m/s]"
 
@@ -298,7 +302,7 @@ _PART = re.compile(r"(?i)(?:ship[ _]?)?(lat|lon)\w*?[ _\[(]*(deg|min|hem|ns|ew|d
 _LARGEST = 5_000_000
 _NEAR = 1.0  # degrees: largest difference between the positions of a survey
 _BareRow = tuple[int, list[str]]
-"""The number of a line and its cells."""
+"""Line number and cells of one row in a file without column headings."""
 
 
 def _survey_table(path: Path) -> tuple[delimited.TextTable, float | None, list[str]]:
@@ -307,7 +311,7 @@ def _survey_table(path: Path) -> tuple[delimited.TextTable, float | None, list[s
     Raises
     ------
     InputError
-        The file is unreadable or empty, or its form is unknown.
+        The file is unreadable or empty, or has an unknown format.
     """
     rows = _bare_rows(path)
     columns = len(rows[0][1]) if rows else 0
@@ -350,9 +354,11 @@ def _bare_rows(path: Path) -> list[_BareRow]:
 
 
 def _row_of_depths(rows: Sequence[_BareRow]) -> int:
-    """Return the number of the row with the depths: 2 if a target row precedes it, else 1.
+    """Return the number of the row that contains the depths, counted from 1.
 
-    Return 0 if the last two cells of the other rows are not positions of one survey.
+    The number is 2 if a row with the target precedes the depths; otherwise, it is 1. Return 0 if
+    the file has another format. In the NOC format, the last two cells of all other rows are
+    positions of one survey.
     """
     if len(rows) <= 4:
         return 0
@@ -371,7 +377,10 @@ def _angle(cells: Sequence[str]) -> str:
 
 
 def _with_joined_positions(table: delimited.TextTable) -> delimited.TextTable:
-    """Join degrees and minutes of positions in one cell, in the column of the degrees."""
+    """Return a copy of a table with the degrees and minutes of each position in one cell.
+
+    The cell is in the column of the degrees.
+    """
     rows, header = list(table.rows), list(table.header.cells)
     for j, cell in enumerate(header):
         of_day = any(":" in row.cells[j] for row in rows if j < len(row.cells))

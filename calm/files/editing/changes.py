@@ -16,7 +16,7 @@ from calm.files.yaml_document import Location
 _BLANK_LINE = re.compile(r"^[ \t]*\r?\n(?=(?:[ ]*#.*\n|[ \t]*\r?\n)*\S)", re.MULTILINE)
 
 NAMED = ("components", "environments")
-"""Sections that contain definitions by name."""
+"""Sections whose keys are names chosen by the user: component ids or environment names."""
 
 
 class EditError(CalmError):
@@ -142,7 +142,7 @@ class Page:
         Parameters
         ----------
         index : index of the first new item
-        values : the items; a `Worded` list supplies items with their own text
+        values : the new items; those of a `Worded` list are written with their own text
         """
         node = self.node(location)
         if node is None or not node.children:
@@ -291,7 +291,10 @@ def retyped(text: str, lines: Sequence[str]) -> str:
 
 
 def _taken_from(old: Sequence[str], new: Sequence[str]) -> list[int | None]:
-    """Return the index of the old line that each new line equals or replaces; None if added."""
+    """Return, for each new line, the index of the old line that the new line equals or replaces.
+
+    The index is None for an added line.
+    """
     # Comparing is slow, and usually only one line differs.
     head = _common_start(old, new)
     tail = _common_start(old[head:][::-1], new[head:][::-1])

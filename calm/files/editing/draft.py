@@ -70,7 +70,7 @@ class Draft:
 
     @cached_property
     def problems(self) -> tuple[Problem, ...]:
-        """Problems in the YAML text, each with an empty `path`.
+        """Problems in the YAML text. The `path` of each problem is empty.
 
         A file with problems can only be edited as plain text.
         """
@@ -98,7 +98,10 @@ class Draft:
 
     @cached_property
     def lists(self) -> LineLists:
-        """Locations of the lists of line items. A line index counts the items of all legs."""
+        """Locations of the lists of line items: one list, or one list for each leg.
+
+        The index of an item in the line is counted through all legs.
+        """
         return LineLists.of(self._root.data if self._root is not None else None)
 
     @property
@@ -217,7 +220,7 @@ class Draft:
         return self.put_at((*own, number, key), value)
 
     def put_at(self, location: Location, value: Value | None) -> Draft:
-        """Set the value at a location, adding missing mappings around it.
+        """Set the value at a location. Mappings that are missing above the location are added.
 
         The value None removes the key and any mappings that become empty, except `environment` and
         the named environments.
@@ -288,7 +291,7 @@ class Draft:
         return self._changed(patches, location, data)
 
     def _changed(self, patches: Iterable[Patch], location: Location, value: Any) -> Draft:
-        """Apply patches to the text, and check that its data have changed at the location only."""
+        """Apply patches to the text, and check that only the value at the location has changed."""
         data = changes.with_value(self._data, location, value)
         text = patched(self._padded, patches)
         line_break = self._page.style.line_break

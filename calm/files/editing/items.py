@@ -64,8 +64,8 @@ class LineLists:
     def place(self, index: int, *, above: bool) -> tuple[Location, int]:
         """Convert a line index to the location of a list and an index in this list.
 
-        An index between two legs means the start of the lower leg if `above`, else the end of the
-        upper leg.
+        At the boundary of two legs, the result is the start of the lower leg if `above` is true.
+        Otherwise, the result is the end of the upper leg.
         """
         for rows, count in self.all[:-1]:
             if index < count or (index == count and not above):
@@ -76,7 +76,8 @@ class LineLists:
     def place_in(self, rows: Location, index: int, *, above: bool) -> tuple[Location, int]:
         """Return the location of the list that contains an item, and the index in this list.
 
-        The given index is a line index if `rows` is `LINE`, else an index in the list at `rows`.
+        If `rows` is `LINE`, the argument `index` is a line index. Otherwise, `index` refers to the
+        list at `rows`, and is returned unchanged.
         """
         return self.place(index, above=above) if rows == LINE else (self.real(rows), index)
 
@@ -98,7 +99,8 @@ class LineItem:
 
     Attributes
     ----------
-    line, column : position in the text, from 1, which is also that of the resulting pieces
+    line, column : position of the item in the text, from 1; the pieces that the item produces have
+        the same position
     values : keys and plain values as written; empty text for a key without a value, and text such
         as `480 m at 2 kN` for `length_at`
     text : lines of the item in the file, with its comments
@@ -172,7 +174,8 @@ class Items:
     gaps : text before each item that belongs to no item
     rest : text after the last item
     separator : text between two items in brackets
-    on_a_dash : whether the first entry of a mapping follows a dash or a `?` on its line
+    on_a_dash : whether the first entry of the mapping is on the same line as a preceding dash or
+        `?`
     """
 
     start: int
@@ -209,7 +212,10 @@ class Items:
 
 
 def items_of(text: str, node: Node) -> Items | None:
-    """Divide a collection into items; return None if other text is on the same lines.
+    """Divide a collection into items.
+
+    Return None if the lines of the items contain other text, such as the dash of an outer list, or
+    a comment between brackets.
 
     The text must end with a line break.
     """

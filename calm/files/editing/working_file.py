@@ -198,7 +198,10 @@ class WorkingFile:
             return _UNREADABLE if _status(self.path) else None
 
     def _copy_folders(self) -> list[tuple[Path, str]]:
-        """Folders for the backup copy, best first, each with the beginning of the file name."""
+        """Return the possible folders of the backup copy, best first.
+
+        With each folder, return the beginning of the name of the copy in this folder.
+        """
         if self.path is None:
             return [(state_folder(), "unnamed")]
         target = Path(os.path.realpath(self.path))

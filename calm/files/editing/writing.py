@@ -56,7 +56,7 @@ class Worded(list[Value]):
 
 
 SECTIONS = frozenset(MooringKeys.model_fields) - {"name", "description", "position", "tow"}
-"""Keys with one value per line below them."""
+"""Top-level keys whose values are always written below the key, one value per line."""
 
 _ORDERS: tuple[tuple[str, ...], ...] = (
     tuple(MooringKeys.model_fields),
@@ -200,7 +200,7 @@ def place_of(name: str, names: Sequence[str]) -> int:
 
 
 def _is_deep(value: Mapping[str, Value]) -> bool:
-    """True if a value of the mapping is a mapping, or a list of anything but texts."""
+    """True if a value of the mapping is a mapping, or a list that contains a mapping or list."""
     return any(
         isinstance(one, Mapping)
         or (one is not None and not isinstance(one, str) and any(map(_is_long, one)))
@@ -213,7 +213,10 @@ def _is_long(value: Value) -> bool:
 
 
 def _below_keys(node: Node) -> Iterator[tuple[Node, Node]]:
-    """Yield (mapping, collection) for each block collection that is a value of a mapping."""
+    """Yield (mapping, collection) for each collection in block style that is the value of a key.
+
+    The mapping is the one that contains the key.
+    """
     for child in node.children:
         if child.style == "block":
             if node.kind == "mapping":
