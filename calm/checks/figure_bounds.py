@@ -22,9 +22,10 @@ GREATEST_STRENGTH = 4e9
 """Upper bound on the tensile strength of any fibre or wire, for cables of unknown material [Pa]."""
 
 ROPE_EFFICIENCY = 0.6
-"""Maximum ratio of a rope's breaking stress, over its nominal section, to the strength of its yarn.
+"""Maximum ratio of a rope's breaking stress to the strength of its yarn.
 
-A default of CALM. Ropes in the catalogue have 0.12 to 0.44.
+The breaking stress is the breaking load divided by the nominal section. The value is a default of
+CALM. Ropes in the catalogue have 0.12 to 0.44.
 """
 
 WEAKEST_ROPE = 0.05
@@ -269,9 +270,10 @@ def rope_section(component: Flexible) -> float:
 
 
 def _load_bearing(rope: Cable) -> list[Material]:
-    """Return the metals of a rope without lead, or its fibres if the rope has no metal.
+    """Return the load-bearing materials of a rope.
 
-    The list is empty if a density is unknown, or if a fibre rope has a lead core.
+    These are the metals except lead, or the fibres if there is no such metal. The list is empty if
+    a density is unknown, or if a fibre rope has a lead core.
     """
     named = materials_in(rope.material)
     metals = [one for one in named if one.family == "metal" and one.name != "lead"]

@@ -136,8 +136,9 @@ def _rating_words(
 
 
 _STRETCH = 0.02
-"""Stretch, as a fraction of the water depth, below which an unknown stretch is ignored: the error
-of a sounding.
+"""Largest possible stretch of a rope, as a fraction of the water depth, that may remain unknown.
+
+The value is the error of a sounding.
 """
 
 _MEASURED = 0.2

@@ -153,7 +153,7 @@ def _changed(
 
 
 def in_other_waters(file: MooringFile, water: Water) -> Iterator[tuple[str, MooringFile]]:
-    """Yield the name and the changed file of each situation with other water.
+    """Yield the name and the file of each situation with changed current or water depth.
 
     These are still water, still low water, high water and low water, as applicable.
     """
@@ -240,9 +240,10 @@ def differs(designed: MooringFile, deployed: MooringFile) -> bool:
 
 @rule("as-deployed", once=True, case="d")
 def deployed_depth(handling: Handling) -> Iterator[Verdict]:
-    """Check the depth of the top of the upright line, as deployed, against the design depth.
+    """Compare the top depth as deployed with the top depth of the design.
 
-    For a surface mooring, the change in water depth is checked instead.
+    Both depths are for the upright line. For a surface mooring, the water depths are compared
+    instead.
     """
     leg = handling.leg
     if leg.file.deployed is None:
@@ -349,8 +350,7 @@ WEAK_BESIDE_OTHERS = 0.02
 def currents(legs: Sequence[Leg]) -> Iterator[tuple[Leg, Verdict]]:
     """Check the strongest current, and report depths that current profiles do not cover.
 
-    `legs` contains one leg per environment. Each verdict is yielded with the leg in the affected
-    environment.
+    `legs` contains one leg per environment. Yield pairs of a leg and a verdict on its environment.
     """
     speeds = [float(np.hypot(each.water.u, each.water.v).max()) for each in legs]
     for leg, speed in zip(legs, speeds, strict=True):

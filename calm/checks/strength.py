@@ -385,9 +385,10 @@ rule satisfies all three rules in the same situation.
 def with_one_weight(
     findings: Iterable[Finding], governing: Mapping[Place | None, Finding]
 ) -> Iterator[Finding]:
-    """Yield the findings, with one common remedy for all findings on an anchor that is too light.
+    """Yield the findings, with the same remedy in all findings on an anchor that is too light.
 
-    The remedy states the largest required weight. `governing` is the result of `heaviest`.
+    This remedy states the largest required weight. `governing` holds the findings with these
+    remedies, as returned by `heaviest`.
     """
     for one in findings:
         lead = governing.get(one.place)
@@ -396,9 +397,9 @@ def with_one_weight(
 
 
 def heaviest(findings: Iterable[Finding]) -> dict[Place | None, Finding]:
-    """Return, by place of the anchor, the finding that requires the largest weight.
+    """Return for each anchor the finding that requires the largest anchor weight.
 
-    Only findings on an anchor that is too light count.
+    The keys are the places of the anchors. Anchors that are heavy enough are omitted.
     """
     found: dict[Place | None, Finding] = {}
     for one in findings:

@@ -268,8 +268,9 @@ def _gridded_current(
 ) -> _Grid | None:
     """Read a current file; return None if the file does not exist.
 
-    Step, start and count of time, depth, x and y come first, then speeds in x, y and z. Depth
-    varies fastest, then x, y and time.
+    The file begins with step, start and count of the time, then of depth, x and y. The velocities
+    follow, each with components x, y and z. In their order, depth varies fastest, then x, y and
+    time.
     """
     folder = problem.path.parent
     path, outside = folder / value.text, problem.options.allow_include

@@ -94,9 +94,10 @@ class _File:
     def along(
         self, names: list[str], lines: list[_Row], placed: set[str]
     ) -> list[model.ImportedPiece]:
-        """Convert lines, and the parts at their points, to pieces in order.
+        """Convert successive lines, and the buoys or weights at their points, to pieces in order.
 
-        The part at a point in `placed` is omitted. All points are added to `placed`.
+        `names` are the points along these lines. Points in `placed` are already converted and give
+        no piece. All points in `names` are added to `placed`.
         """
         items: list[model.ImportedPiece] = []
         for at, line in zip(names, [*lines, None], strict=True):
