@@ -37,7 +37,7 @@ _HEAVY = 20.0  # N: maximum weight of connecting hardware, whatever its name
 _LONG, _SLENDER = 3.0, 60.0
 """Minimum length [m] and minimum ratio of length to diameter of a line.
 
-A piece that exceeds both limits is a line, unless its name denotes a release or a connector.
+A piece that reaches both limits is a line, unless its name denotes a release or a connector.
 """
 
 _LONGEST_PIECE = 20.0  # m: maximum length of a rigid piece

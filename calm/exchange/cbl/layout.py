@@ -248,7 +248,10 @@ class CableLayout:
         self.design.lay([*last, *items, *first], upper, lower)
 
     def _end(self, at: _End) -> tuple[list[model.ImportedPiece], str, bool]:
-        """Return the pieces and the connection at an end of a leg, and whether it is a lower end."""
+        """Return the pieces and the connection at an end of a leg.
+
+        The third item is true if the end is a lower end.
+        """
         if isinstance(at, str):
             return [], model.joined_at(at), False
         values, token = at.values, at.token

@@ -208,7 +208,7 @@ def _lay_rigid(system: _System, parts: list[ExportedPart], top: Coordinates) -> 
 def _lay_float(system: _System, design: ExportedLine, path: Floats) -> None:
     """Add the uppermost piece as a point at its top and a stiff line for its immersed length.
 
-    The stiff line is neutrally buoyant and has a small part of the mass. The point has the rest.
+    The stiff line is neutrally buoyant, and has half of the mass. The point has the other half.
     """
     part = design.parts[0]
     top, bottom = place_along(path, 0.0), place_along(path, 1.0)

@@ -261,8 +261,9 @@ def _either(digits: str) -> str:
 def decimal_sign(cells: Iterable[tuple[str, str]]) -> tuple[str, str]:
     """Find the decimal symbol of a file; also return a remark on the meaning of commas.
 
-    The remark is empty if the commas need no explanation. `cells` yields the position and text of each cell that should have a number. Raise ValueError if
-    the numbers are contradictory, or ambiguous like `1,250`.
+    The remark is empty if the commas need no explanation. `cells` yields the position and text of
+    each cell that should have a number. Raise ValueError if the numbers are contradictory, or
+    ambiguous like `1,250`.
     """
     seen: dict[str, str] = {}
     doubtful: dict[str, tuple[str, str]] = {}  # position, and digits
