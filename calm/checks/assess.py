@@ -2,7 +2,7 @@
 
 The probability that a limit is exceeded is the fraction of random samples that exceed the limit. A
 sample without equilibrium counts as exceeding every limit. Launch, recovery and breaks take much
-longer to solve, and use only the first `HANDLED` samples.
+longer to solve. They are solved only for the first `HANDLED` samples.
 """
 
 from collections import Counter
@@ -457,7 +457,7 @@ def _findings_with_probabilities(
 
 
 _ALL: Key = ("", None)
-"""Key under which samples without equilibrium are counted."""
+"""Key of the number of samples without equilibrium."""
 
 
 def _exceeding_samples(

@@ -163,8 +163,8 @@ def load_bounds(component: Component) -> tuple[float, float, str] | None:
 def load_out_of_bounds(component: Component, most: float, size: str) -> Iterator[str]:
     """Yield a message if a load rating of a component is implausibly large or small.
 
-    For a component other than a cable or chain, `most` is the maximum plausible load [N], and
-    `size` names the values used for `most`.
+    `most` is the maximum plausible load [N], and `size` names the values that determine `most`.
+    Both are ignored for a cable or chain.
     """
     least = 0.0
     if (bounds := load_bounds(component)) is not None:

@@ -43,7 +43,7 @@ class Break:
     margin : net buoyancy of the section with the release after all releases open [N]
     required : minimum required value of `margin` [N]
     weight_lifted : weight in water of the non-buoyant pieces in this section [N]
-    judged : False for a break that strands the release in any design
+    judged : False for a break after which the release would stay down in any design
     loose : net buoyancy of the section that the break sets adrift before any release opens [N]
     """
 
@@ -173,7 +173,8 @@ class LegGraph:
         """Return the breaks below every piece that surfaces, in file order.
 
         The margin of a break inside a cable lies between the margins of breaks at the two ends of
-        the cable. Breaks that strand the release in any design are not judged:
+        the cable. After some breaks the release would stay down in any design. Such breaks are not
+        judged:
 
         - breaks inside the last cluster of floats above a release;
         - breaks between this cluster and the release, up to a distance of `SHORT_LEAD`.
@@ -218,7 +219,7 @@ class LegGraph:
     def _strands_release(
         self, chain: Sequence[Hashable], at: int, part: list[int], between: tuple[str, ...]
     ) -> bool:
-        """Return whether a break strands the release in any design.
+        """Return whether the release would stay down after a break in any design of the line.
 
         `between` lists the kinds and roles of pieces that may lie between the floats of a cluster.
         """

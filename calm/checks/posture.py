@@ -19,8 +19,9 @@ LEAST_TOP_DEPTH = 10.0
 """Default minimum depth of the top of a sub-surface line [m]."""
 
 MOST_OF_A_RATING = 0.5
-"""Maximum margin on depth, as a fraction of the depth rating, so that shallow-water equipment can
-be used.
+"""Maximum margin on depth, as a fraction of the depth rating.
+
+Without this maximum, equipment with a small depth rating could not be used.
 """
 
 JUDGED_ROLES = ("float", "instrument", "release")

@@ -336,13 +336,12 @@ USUAL_CURRENT = 0.2
 """Surface current driven by a wind of 7 m/s alone: 0.03 times the wind speed, DNV-RP-C205 [m/s]."""
 
 SHARE_OF_ITS_RECORD = 0.9
-"""Ratio of the design current to the strongest current of its record, below which the design
-current is too weak.
-"""
+"""Minimum ratio of the design current to the strongest current of the underlying record."""
 
 WEAK_BESIDE_OTHERS = 0.02
-"""Ratio of a current to the strongest of all environments, below which its unit is probably wrong;
-1/100 suggests cm/s.
+"""Ratio of a current to the strongest current of all environments, below which a unit is doubtful.
+
+A ratio near 1/100 suggests that speeds in cm/s and m/s were exchanged.
 """
 
 

@@ -51,7 +51,7 @@ def governing_load(
 
 
 def wanted_load(component: Component) -> str:
-    """Return the key of the load rating to request for a component without any load rating."""
+    """Return the key of the load rating to set in a component without any load rating."""
     return "breaking_load" if isinstance(component, Flexible) else "working_load"
 
 
@@ -233,10 +233,10 @@ def _is_estimated(component: Component) -> bool:
 def _steps(
     result: LegResult, loads: Sequence[float | None]
 ) -> Iterator[tuple[float, Piece, float, float]]:
-    """Compare each piece between two cables with the weaker cable.
+    """Compare the allowable load of each piece between two cables with that of the weaker cable.
 
-    Yield the ratio of the allowable loads of piece and cable, the piece, its allowable load [N],
-    and the allowable load of the cable [N].
+    Yield the allowable load of the piece divided by that of the cable, the piece, the allowable
+    load of the piece [N], and that of the cable [N].
     """
     # a chain is no reference: it is oversized to allow for wear
     cables = [
@@ -377,8 +377,9 @@ def anchor_sliding(leg: Leg) -> Iterator[Criterion]:
 
 
 ANCHOR_RULES = tuple(each.name for each in (anchor_weight, anchor_uplift, anchor_sliding))
-"""Rules that a sufficiently heavy anchor satisfies. An anchor with the weight required by the first
-rule satisfies all three rules in the same situation.
+"""Rules that a sufficiently heavy anchor satisfies.
+
+The weight that the first rule requires also satisfies the other two rules in the same situation.
 """
 
 

@@ -70,7 +70,7 @@ def _model(component: model.ImportedComponent) -> Component | None:
 def _likeness(name: str, id: str, other: str) -> float:
     """Rate the similarity of a component name to the id and name of a catalogue entry.
 
-    Return inf for a name equal to the id or name of the entry, and 0 for a name that is not similar.
+    Return inf if the name is equal to the id or name of the entry, and 0 if they are not similar.
     Otherwise, return the number of shared words divided by the number of all different words.
     """
     if name.casefold() in (id, other.casefold()):

@@ -76,9 +76,10 @@ class _File:
     def walk(
         self, start: str, left: list[_Row], breaks: Collection[str]
     ) -> tuple[list[str], list[_Row]]:
-        """Follow lines from a point to a point in `breaks`, or to the end.
+        """Follow lines from the point `start` to the next point in `breaks`, or to a free end.
 
-        Return the points and lines passed; these lines are removed from `left`.
+        Only lines in `left` are followed. Return the points and lines on the path, and remove these
+        lines from `left`.
         """
         names, lines = [start], list[_Row]()
         while not lines or names[-1] not in breaks:

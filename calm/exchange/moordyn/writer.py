@@ -40,7 +40,7 @@ class _Point:
 
 @dataclass
 class _Length:
-    """An unstretched length [m] of a line type between two points."""
+    """A line of MoorDyn between two points: line type and unstretched length [m]."""
 
     type: str
     lower: _Point
@@ -50,9 +50,9 @@ class _Length:
 
 @dataclass
 class _System:
-    """Contents of the file, collected leg by leg, each leg from its lower end up.
+    """Contents of the MoorDyn file, collected leg by leg, each leg from its lower end up.
 
-    `here` is the point to which the next length is attached.
+    `here` is the point to which the next line is attached.
     """
 
     density: float

@@ -94,7 +94,7 @@ class ListColumn:
     by_mass : whether forces are in kilograms
     per_metre : whether the values of lines are per metre
     known : whether the heading has a unit
-    whole : whether values are totals, for all pieces in a row or for the whole line
+    whole : whether a value is a total for all pieces in a row, or for the whole length of a line
     wrong : message about a mistake in the heading, or empty
     twin : second column for the same quantity; one column is per metre, the other per piece
     """
