@@ -55,9 +55,9 @@ def environment(legs: Sequence[Leg]) -> Iterator[Found]:
 def _weaker_than(ordinary: Leg, other: Leg) -> Iterator[Found]:
     """Warn if a storm current is much weaker than the ordinary current at some depth.
 
-    The current of `other` is a storm current if its environment has the name of a storm, or if its
-    maximum speed is larger. Without the name of a storm, only depths between the first and the last
-    level at which `other` is not weaker are compared.
+    The current of `other` is a storm current if the name of its environment suggests a storm, or if
+    its maximum speed is larger. In the second case, the depths above the first level and below the
+    last level at which `other` is at least as strong are ignored.
     """
     first, second = (each.file.environment for each in (ordinary, other))
     levels = np.union1d(first.current.depth, second.current.depth)

@@ -43,7 +43,7 @@ class Break:
     margin : net buoyancy of the section with the release after all releases open [N]
     required : minimum required value of `margin` [N]
     weight_lifted : weight in water of the non-buoyant pieces in this section [N]
-    judged : False for a break after which the release would stay down in any design
+    judged : False for a break after which no design of the line could bring up the release
     loose : net buoyancy of the section that the break sets adrift before any release opens [N]
     """
 
@@ -173,14 +173,13 @@ class LegGraph:
         """Return the breaks below every piece that surfaces, in file order.
 
         The margin of a break inside a cable lies between the margins of breaks at the two ends of
-        the cable. After some breaks the release would stay down in any design. Such breaks are not
-        judged:
+        the cable. Breaks are not judged if no design of the line could bring up the release:
 
         - breaks inside the last cluster of floats above a release;
         - breaks between this cluster and the release, up to a distance of `SHORT_LEAD`.
 
-        Floats with only connectors and chain between them form a cluster. If all breaks would be
-        exempt, chain between floats separates clusters. `whole` contains all pieces as one leg, and
+        Floats with only connectors and chain between them form a cluster. If these exceptions cover
+        all breaks, floats with chain between them are separate clusters. `whole` contains all pieces as one leg, and
         supplies the limits.
         """
         rising = {one for part in self._rising_parts(()) for one in part}
@@ -219,7 +218,7 @@ class LegGraph:
     def _strands_release(
         self, chain: Sequence[Hashable], at: int, part: list[int], between: tuple[str, ...]
     ) -> bool:
-        """Return whether the release would stay down after a break in any design of the line.
+        """Return whether no design of the line could bring up the release after a break.
 
         `between` lists the kinds and roles of pieces that may lie between the floats of a cluster.
         """
