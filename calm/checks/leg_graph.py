@@ -179,8 +179,8 @@ class LegGraph:
         - breaks between this cluster and the release, up to a distance of `SHORT_LEAD`.
 
         Floats with only connectors and chain between them form a cluster. If these exceptions cover
-        all breaks, floats with chain between them are separate clusters. `whole` contains all pieces as one leg, and
-        supplies the limits.
+        all breaks, floats with chain between them are separate clusters. `whole` contains all
+        pieces as one leg, and supplies the limits.
         """
         rising = {one for part in self._rising_parts(()) for one in part}
         before = {one for part in self._free_parts(()) for one in part}

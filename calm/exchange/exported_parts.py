@@ -96,7 +96,7 @@ class ExportedPart:
 
         The drag area is tangential if `along` is true, and normal otherwise. `density` is the
         uniform density of the water in the other program [kg/m³]. The drag area is scaled so that
-        the drag in this water is the drag at the depth of the part. By default, the drag area is
+        the drag in this water equals that at the depth of the part. By default, the drag area is
         for reference water.
         """
         own = (self.kt if along else self.kn) / (0.5 * REFERENCE_DENSITY)

@@ -76,7 +76,7 @@ class _File:
     def walk(
         self, start: str, left: list[_Row], breaks: Collection[str]
     ) -> tuple[list[str], list[_Row]]:
-        """Follow lines from the point `start` to the next point in `breaks`, or to a free end.
+        """Follow lines from the point `start` to the next point in `breaks`, or to the last point.
 
         Only lines in `left` are followed. Return the points and lines on the path, and remove these
         lines from `left`.
