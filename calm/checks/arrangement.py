@@ -173,9 +173,9 @@ def _bears_torque(component: Component) -> bool:
 
 
 def _held_by(pieces_there: Sequence[Piece]) -> tuple[Piece, bool] | None:
-    """Find the first float beyond one end of a wire; None if a cable or chain comes first.
+    """Return the first float beyond one end of a wire, and whether a swivel precedes the float.
 
-    The flag is true if a swivel lies between the wire and the float.
+    Return None if a cable or chain comes before the float.
     """
     has_swivel = False
     for piece in pieces_there:
@@ -293,8 +293,9 @@ def clamp_grip(result: LegResult) -> Iterator[Verdict]:
 def clamp_grip_in_transit(handling: Handling) -> Iterator[Verdict]:
     """Check the grip of each clamp against the axial force during launch and recovery.
 
-    The force [N] is the submerged weight of the clamped item, and its drag in flow along the line
-    at the largest touchdown speed of the anchor or at the rise speed of the line.
+    The force [N] is the sum of submerged weight and drag of the clamped item. The drag is computed
+    for flow along the line. During launch, the flow speed is the upper limit of the touchdown
+    speed. During recovery, the flow speed is the rise speed.
     """
     launch, rise = handling.launch, None if is_hauled_in(handling) else handling.recovery
     deep = np.array(handling.leg.water.depth)
@@ -323,10 +324,13 @@ Source: McLane Moored Profiler, user manual.
 
 @rule("profiler")
 def profiler(result: LegResult) -> Iterator[Verdict]:
-    """Check the tension, wire, path and drive force of each profiler at its current position.
+    """Check whether each profiler can travel along its wire.
 
-    The flow along the wire past the profiler is at most the profiler speed plus current ×
-    sin(tilt). Wheel friction and compression of the profiler are neglected.
+    The rule checks the wire tension at the profiler, the wire diameter, clamps in the path, the
+    drive force and the duration of a profile. The drive force must overcome the drag and the net
+    weight of the profiler along the wire. The drag is computed for a flow of profiler speed +
+    current × sin(tilt), an upper bound. Wheel friction and the compressibility of the profiler are
+    neglected.
     """
     for row in result.clamps:
         if isinstance(row.part.component, Profiler):
@@ -402,7 +406,10 @@ def _clamps(leg: Leg) -> list[JudgedPart]:
 
 
 def _lift(part: JudgedPart, leg: Leg, density: float) -> float:
-    """Return the net force in water of a given density [N], positive up."""
+    """Return the net force on a submerged part [N], positive up.
+
+    `density` is the water density [kg/m³].
+    """
     gravity, volume = leg.water.gravity, part.component.displaced_volume or 0.0
     excess = (density - REFERENCE_DENSITY) * volume * gravity
     return net_buoyancy(part.component, gravity) + excess

@@ -2,7 +2,7 @@
 
 The probability that a limit is exceeded is the fraction of random samples that exceed the limit. A
 sample without equilibrium counts as exceeding every limit. Launch, recovery and breaks take much
-longer to solve, and use only the first `HANDLED` samples.
+longer to solve. They are solved only for the first `HANDLED` samples.
 """
 
 from collections import Counter
@@ -74,8 +74,8 @@ def checked_environment(
     Parameters
     ----------
     situations : solved situations, beginning with the unchanged mooring
-    name : name of the mooring in its findings
-    day : date for acceptances; today by default
+    name : mooring name to use in the findings
+    day : date on which acceptances must be valid; today by default
     """
     given, *changed = ([*findings_of(each, name, environment, day=day)] for each in situations)
     if not leg.of_several:
@@ -101,9 +101,10 @@ def checked_environment(
 
 
 def _tighter(listed: Iterable[Finding], others: Iterable[Finding]) -> Iterator[Finding]:
-    """Yield findings of `others` with a larger utilisation than in `listed`.
+    """Yield the findings in `others` that increase the utilisation of a part under a rule.
 
-    The result has at most one finding for each rule and piece or clamp.
+    For each rule and part, the largest utilisation in `others` is compared with the largest in
+    `listed`. At most one finding is yielded for each rule and part.
     """
     known: dict[tuple[str, Place | None], float] = {}
     for one in listed:
@@ -124,7 +125,7 @@ def assessment_of(
 
     Parameters
     ----------
-    day : date for acceptances; today by default
+    day : date on which acceptances must be valid; today by default
     """
     in_environments = with_cases(in_environments)
     first = next(
@@ -170,7 +171,7 @@ def assessment_of(
 def with_cases(in_environments: Sequence[MooringInEnvironment]) -> tuple[MooringInEnvironment, ...]:
     """Return the environments with load-case codes added to all findings.
 
-    All remedies for an anchor that is too light name the largest weight that any finding requires.
+    If an anchor is too light in several load cases, each remedy states the largest required weight.
     """
     numbers = _environment_numbers(in_environments)
     every = (one for checked in in_environments for one in (*checked.findings, *checked.tighter))
@@ -204,7 +205,7 @@ def cased(
 ) -> list[Finding]:
     """Add load-case codes to the findings on currents and drag coefficients.
 
-    The code is that of the unchanged mooring in the environment of the finding.
+    These findings get the code of their environment, without a suffix for a situation.
     """
     numbers = _environment_numbers(in_environments)
     return [
@@ -216,9 +217,9 @@ def cased(
 
 
 def _environment_numbers(in_environments: Sequence[MooringInEnvironment]) -> dict[str, int]:
-    """Number the environments in order, from 1.
+    """Return the number of each environment, from 1, by name.
 
-    The keys are the names of the environments, and the names used in `in_environments`.
+    The name in the mooring file and the name in `MooringInEnvironment` both lead to the number.
     """
     numbers: dict[str, int] = {}
     for checked in in_environments:
@@ -270,7 +271,7 @@ def findings_of(
     Parameters
     ----------
     mooring, environment : names in the findings
-    day : date for acceptances; today by default
+    day : date on which acceptances must be valid; today by default
     """
     if situation.failure is not None:
         for verdict in equilibrium.judge(situation.failure):
@@ -456,7 +457,7 @@ def _findings_with_probabilities(
 
 
 _ALL: Key = ("", None)
-"""Key under which samples without equilibrium are counted."""
+"""Key of the number of samples without equilibrium."""
 
 
 def _exceeding_samples(
@@ -464,8 +465,8 @@ def _exceeding_samples(
 ) -> Counter[Key]:
     """Count the samples that exceed each limit.
 
-    The samples are solved in equilibrium or, if `in_equilibrium` is false, for launch, recovery and
-    breaks.
+    If `in_equilibrium` is true, the rules for the equilibrium are evaluated. Otherwise, the rules
+    for launch, recovery and breaks are evaluated.
     """
     block = BLOCK if in_equilibrium else BLOCK // 16
     blocks = [draws[first : first + block] for first in range(0, len(draws), block)]

@@ -65,10 +65,11 @@ class MooringInEnvironment:
     Attributes
     ----------
     situations : solved situations, beginning with the unchanged mooring
-    findings : all findings for the unchanged mooring, and more severe findings for other situations
-    tighter : findings for other situations with a larger utilisation than in `findings`
+    findings : findings for the unchanged mooring, and any more severe findings for other situations
+    tighter : further findings for other situations; their utilisation exceeds that in `findings`
     accepted : accepted findings for all situations
-    lacking : findings for all situations that lack a component value; not in `findings`
+    lacking : findings that are unknown because a component value is missing, for all situations;
+        `findings` excludes them
     """
 
     environment: str
@@ -94,8 +95,8 @@ class Assessment:
     name : name of the mooring, unique among the moorings checked together
     in_environments : one entry per environment (for a net, per environment and leg)
     launch, recovery : solutions in the first environment with an equilibrium, if any
-    backup, losses : results for a break at each connection above the release, and for the loss of
-        each buoyant element, from the top
+    backup : effect of a break at each connection above the release, from the top
+    losses : effect of the loss of each buoyant element, from the top
     findings : findings of the rules that are not evaluated in each environment
     notices : messages for the user, such as those about expired acceptances
     draws : number of samples and random seed for probabilities, if any
@@ -207,8 +208,9 @@ class Acceptance:
     def of(self, finding: Finding) -> Finding:
         """Return a finding after applying the estimates and acceptances of the file.
 
-        A finding that fails or is unknown becomes accepted if the file accepts the finding. An
-        acceptance of the rule `missing` covers every rule that lacks a value of the component.
+        A finding that fails or is unknown becomes accepted if the file accepts the finding. If a
+        file accepts the rule `missing` for a component, all findings that lack a value of this
+        component are accepted.
         """
         finding = self._estimated(finding)
         if finding.state not in (State.FAIL, State.UNKNOWN):
@@ -234,8 +236,8 @@ class Acceptance:
     def _estimated(self, finding: Finding) -> Finding:
         """Change the state of a finding that relies on the lower bound of an estimate.
 
-        A pass becomes estimated, and a failure becomes unknown. A failure remains if a specified
-        value sets the limit.
+        A pass becomes estimated, and a failure becomes unknown. A failure is kept if a specified
+        value determines its limit.
         """
         part, figures = self.parts.get(finding.component or ""), RULES[finding.rule].figures
         if part is None or not figures or finding.state not in (State.PASS, State.FAIL):
@@ -304,7 +306,7 @@ def _in_words(estimates: tuple[EstimatedFigure, ...]) -> str:
 def estimated(leg: Leg) -> Leg:
     """Return a copy of a leg in which lower bounds of estimates replace missing values.
 
-    The lower bounds are those in waves for a surface line, or in an environment with waves.
+    For a surface line or in an environment with waves, the lower bounds for use in waves apply.
     """
     file = leg.file
     if not any(part.component.estimates for part in parts_of(file.pieces)):

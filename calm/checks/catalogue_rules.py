@@ -47,9 +47,9 @@ The factor exceeds `ROUNDING`: a nominal diameter may be one size below the true
 """
 
 NOMINAL = 1.25
-"""Maximum ratio of a wire's displaced volume to the volume of its nominal diameter.
+"""Maximum ratio of a wire's displaced volume to the volume of a cylinder of its nominal diameter.
 
-Published masses and weights in water of jacketed wires imply this ratio.
+The ratio follows from the published masses and submerged weights of jacketed wires.
 """
 
 LOOSEST = 0.1
@@ -240,8 +240,8 @@ def _displaced_weight(component: Component, mass: float) -> float:
 def _rope_faults(rope: Cable) -> Iterator[str]:
     """Yield messages about values that are implausible for the diameter and material of a rope.
 
-    The bar for comparison has the specified `density`, or else the density of the `material` or of
-    steel.
+    The rope is compared with a solid bar of the same diameter. The density of the bar is the
+    `density` of the rope, or else the density of its `material`, or else that of steel.
     """
     section = rope_section(rope)
     density = rope.density or materials.density_of(rope.material) or STEEL_DENSITY
@@ -372,7 +372,7 @@ def _of_unknown_material(component: Component | Outline) -> Iterator[str]:
 
 
 LOADS = ("working_load", "breaking_load")
-"""Keys for loads; a component with either key can be checked for strength."""
+"""Keys of the load ratings; one of them suffices for a check of the strength."""
 
 TILTED_ROLES = ("instrument", "release")
 """Roles of components that only work if they are nearly upright."""

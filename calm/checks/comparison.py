@@ -79,7 +79,7 @@ class Comparison:
 _Solved = tuple[Result | NoEquilibrium, Assessment | None]
 """Result of a design, or the reason why there is none, and the assessment (None for a tow)."""
 _Figures = dict[str, tuple[str, str, Number | str]]
-"""Title, quantity and value by the name of the compared value."""
+"""Compared values of one design: title, quantity and value, by dotted name."""
 
 
 def comparison_of(names: tuple[str, str], before: Design, after: Design) -> Comparison:

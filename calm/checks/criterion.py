@@ -72,14 +72,15 @@ class Criterion:
     part : piece or clamp to check; for the whole line, the top piece or the anchor
     quantity : a key of `READINGS`
     limit : limit in SI units or degrees; None if the component lacks a value for the limit
-    words : function of the value (NaN if unknown) and the result that returns message and remedy
+    words : function that returns message and remedy, given the value (NaN if unknown) and the
+        result
     least : whether the limit is a lower limit
-    beyond : state if the value violates the limit
-    silent : whether the criterion does not apply if the value is NaN; otherwise, NaN means unknown
+    beyond : state of the verdict if the value violates the limit
+    silent : whether to skip the criterion if the value is NaN; otherwise, the verdict is unknown
     source, figure : as in `Verdict`
     lacks : key of the missing component value, if `limit` is None
-    stated : function of the value and the result that returns value and limit of a more customary
-        quantity for display
+    stated : function that converts the value to a more customary quantity for display; given the
+        value and the result, the function returns the displayed value and its limit
     stated_least : whether the displayed limit is a lower limit
     """
 
@@ -194,9 +195,10 @@ READINGS: dict[str, Callable[[LegResult, JudgedPart], float]] = {
 def limits_used(file: MooringFile, surface: bool) -> tuple[LimitKey, ...]:
     """Return every limit that the design check applies to a mooring.
 
-    All values and settings that make the check more lenient are included, such as a load rating
-    above that of the catalogue. A friction coefficient of the anchor replaces `anchor_friction`.
-    For a surface mooring (`surface`), the minimum top depth has no default.
+    The list also has the values and settings of the file that make the check more lenient, such as
+    a load rating above the catalogue value. If the anchor has its own friction coefficient, the
+    list has this value for `anchor_friction`. `surface` is true for a surface mooring. A surface
+    mooring has no default for the minimum top depth.
     """
     given = file.checks.minimum_top_depth is not None
     used = (

@@ -49,7 +49,7 @@ def check(*designs: Design, day: date | None = None) -> Assessment:
     Parameters
     ----------
     designs : the design in each of its environments
-    day : date for acceptances; today by default
+    day : date on which acceptances must be valid; today by default
 
     Raises
     ------
@@ -76,7 +76,7 @@ def environments_checked(
     Parameters
     ----------
     name : name in the findings
-    day : date for acceptances; today by default
+    day : date on which acceptances must be valid; today by default
     """
     environment = design.environment.name or OWN
     given, *changed = situations.situations_of(design)
@@ -109,7 +109,7 @@ def assessment_of(
     Parameters
     ----------
     in_environments : entries of `environments_checked` for all environments, in order
-    day : date for acceptances; today by default
+    day : date on which acceptances must be valid; today by default
     """
     if not in_environments[0].leg.of_several:
         return assess.assessment_of(name, in_environments, day)

@@ -18,8 +18,8 @@ from calm.quantities import say
 NOTICED = 1.05
 """Ratio of knockdowns above which the rule warns.
 
-The knockdown (or offset) with the drag curve of a smooth shape is divided by the knockdown without
-this curve.
+The ratio is the knockdown (or offset) with the drag curve of a smooth shape, divided by the value
+with the specified drag coefficients.
 """
 
 _LegVerdict = tuple[LegResult, Verdict]
@@ -29,8 +29,9 @@ _LegVerdict = tuple[LegResult, Verdict]
 def drag_coefficient(results: Sequence[LegResult]) -> Iterator[_LegVerdict]:
     """Check that drag coefficients of spheres and cylinders are valid at their Reynolds numbers.
 
-    Only the largest excess over all environments yields a verdict. The verdict is a warning if the
-    drag curve of a smooth shape would increase the knockdown or offset by more than 5 %.
+    The only verdict is on the Reynolds number that exceeds its range most, in any environment. The
+    verdict is a warning if the drag curve of a smooth shape would increase the knockdown or offset
+    by more than 5 %.
     """
     fast = [(result, fast_pieces(result)) for result in results]
     found = [(rows[0], result, rows) for result, rows in fast if rows]
@@ -44,10 +45,10 @@ def drag_coefficient(results: Sequence[LegResult]) -> Iterator[_LegVerdict]:
 
 
 def _effect(result: LegResult, fast: set[int]) -> tuple[str, bool]:
-    """Describe the effect of the drag curve for the `fast` pieces on the knockdown.
+    """Describe how the drag curve of a smooth shape would change the knockdown of the mooring.
 
-    For a surface mooring, the effect on the offset is described. The flag is true if the effect is
-    unfavourable.
+    The drag curve is applied to the pieces with an index in `fast`. For a surface mooring, the
+    change of the offset is described instead. Return the text, and whether the rule must warn.
     """
     file = result.file
     if file.solver.drag == "reynolds" or result.leg.of_several:

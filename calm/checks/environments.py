@@ -53,10 +53,11 @@ def environment(legs: Sequence[Leg]) -> Iterator[Found]:
 
 
 def _weaker_than(ordinary: Leg, other: Leg) -> Iterator[Found]:
-    """Warn if a current that should be stronger is much weaker than the ordinary current.
+    """Warn if a storm current is much weaker than the ordinary current at some depth.
 
-    The current of `other` should be stronger if the name of its environment suggests a storm, or if
-    its maximum is larger. Without such a name, the ends of the profile are ignored.
+    The current of `other` is a storm current if the name of its environment suggests a storm, or if
+    its maximum speed is larger. In the second case, the depths above the first level and below the
+    last level at which `other` is at least as strong are ignored.
     """
     first, second = (each.file.environment for each in (ordinary, other))
     levels = np.union1d(first.current.depth, second.current.depth)

@@ -22,9 +22,10 @@ GREATEST_STRENGTH = 4e9
 """Upper bound on the tensile strength of any fibre or wire, for cables of unknown material [Pa]."""
 
 ROPE_EFFICIENCY = 0.6
-"""Maximum ratio of a rope's breaking stress, over its nominal section, to the strength of its yarn.
+"""Maximum ratio of a rope's breaking stress to the strength of its yarn.
 
-A default of CALM. Ropes in the catalogue have 0.12 to 0.44.
+The breaking stress is the breaking load divided by the nominal section. The value is a default of
+CALM. Ropes in the catalogue have 0.12 to 0.44.
 """
 
 WEAKEST_ROPE = 0.05
@@ -162,8 +163,8 @@ def load_bounds(component: Component) -> tuple[float, float, str] | None:
 def load_out_of_bounds(component: Component, most: float, size: str) -> Iterator[str]:
     """Yield a message if a load rating of a component is implausibly large or small.
 
-    For a component other than a cable or chain, `most` is the maximum plausible load [N], and
-    `size` names the values used for `most`.
+    `most` is the maximum plausible load [N], and `size` names the values that determine `most`.
+    Both are ignored for a cable or chain.
     """
     least = 0.0
     if (bounds := load_bounds(component)) is not None:
@@ -269,9 +270,10 @@ def rope_section(component: Flexible) -> float:
 
 
 def _load_bearing(rope: Cable) -> list[Material]:
-    """Return the metals of a rope without lead, or its fibres if the rope has no metal.
+    """Return the load-bearing materials of a rope.
 
-    The list is empty if a density is unknown, or if a fibre rope has a lead core.
+    These are the metals except lead, or the fibres if there is no such metal. The list is empty if
+    a density is unknown, or if a fibre rope has a lead core.
     """
     named = materials_in(rope.material)
     metals = [one for one in named if one.family == "metal" and one.name != "lead"]

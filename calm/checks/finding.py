@@ -40,7 +40,7 @@ class State(StrEnum):
     """State of a finding, from the least to the most severe.
 
     - Not judged: the rule has no limit or planned value.
-    - Accepted: the rule fails or lacks a value, which the design accepts with a reason.
+    - Accepted: the rule fails or lacks a value, and the mooring file accepts this with a reason.
     - Estimated: the rule passes, but relies on the lower bound of an `estimate`.
     - Unknown: the rule lacks a value.
     """
@@ -122,7 +122,8 @@ class MissingFigure:
     quantity : key of the missing value
     needed_by : names of the rules
     pieces, places : labels and places of the affected pieces and clamps
-    class_estimate : estimate of the value, too low to satisfy the rules, if any
+    class_estimate : estimate of the value for this class of component, if any; the lower bound of
+        the estimate is too low to satisfy the rules
     """
 
     component_id: str
@@ -163,11 +164,12 @@ class Verdict:
     value, limit : value and limit in SI units or degrees; None if unknown
     sense : required relation between value and limit
     remedy : suggested change, if any
-    source : source of the limit; "" for the source of the rule
+    source : source of the limit; "" if the source of the rule applies
     lacks : missing component value that the rule requires, if any
     missing : missing value and everything that needs it; for the rule `missing` only
-    case : code of the load case; None for the code of the environment and situation
-    figure : key of the component value that sets the limit, if several values could
+    case : code of the load case; if None, environment and situation determine the code
+    figure : key of the component value that determines the limit, for rules that choose between
+        several values
     """
 
     component: str | None
@@ -306,9 +308,10 @@ class Rule:
     of_anchor : whether the rule is skipped without an anchor
     criteria : function that yields the criteria for a `Leg`
     once : whether the rule is evaluated once per mooring, from a `Handling`
-    situation, case : situation and load case of a rule with `once`; the codes are L launch, R rise,
-        B break, 0 still water
-    counted : function used instead of `judge` to count random samples that exceed limits
+    situation : situation in the findings, if `once` is true
+    case : load-case code in the findings, if `once` is true: L launch, R rise, B break, 0 still
+        water
+    counted : function that replaces `judge` when random samples beyond a limit are counted
     """
 
     name: str
@@ -426,7 +429,7 @@ _NOT_ACCEPTED = {
     for one in fields(Finding)
     if one.name in ("accept", "unaccepted", "probability", "estimates")
 }
-"""Fields of a new finding that a rule does not set."""
+"""Default values of the `Finding` fields that rules do not set."""
 
 
 def grouped_by(items: Iterable[_Item], key: Callable[[_Item], _Key]) -> dict[_Key, list[_Item]]:
@@ -446,8 +449,8 @@ def worst_of(findings: Iterable[Finding]) -> Finding:
     """Return the most severe finding.
 
     Of equally severe findings, the finding with the largest utilisation is returned. Without
-    utilisations, the smallest margin decides. A finding that is not judged counts only without
-    others.
+    utilisations, the smallest margin decides. A finding that is not judged is returned only if
+    there are no other findings.
     """
     found = [*findings]
     judged = [one for one in found if one.state is not State.NOT_JUDGED]
@@ -475,9 +478,9 @@ def governing(findings: Iterable[Finding]) -> Finding:
 def reported_findings(findings: Iterable[Finding]) -> tuple[Finding, ...]:
     """Select the one or two findings of a rule to be reported.
 
-    The governing finding is reported, followed by the most severe finding if it is more severe. An
-    accepted or estimated finding follows only a governing finding that passes. Without
-    utilisations, only the most severe finding is reported.
+    The first is the governing finding. The second is the most severe finding, if it is more severe
+    than the first. If the second is accepted or estimated, it is reported only if the first passes.
+    If no finding has a utilisation, only the most severe finding is reported.
     """
     found = [*findings]
     lead, worst = governing(found), worst_of(found)

@@ -102,9 +102,9 @@ def grown_component(
 def _larger(
     component: RigidComponent | FlexibleComponent, t: float
 ) -> tuple[dict[str, Any], float]:
-    """Return the drag values that biofouling increases, and the volume of the layer.
+    """Return the size and drag values of a component with biofouling, and the biofouling volume.
 
-    The volume is in m³, or in m³ per metre of cable or chain.
+    `t` is the layer thickness [m]. The volume is in m³, or in m³ per metre of cable or chain.
     """
     if isinstance(component, files.Cable):
         d = component.diameter
@@ -135,7 +135,11 @@ def _larger(
 
 
 def _scales(component: files.Component, kn: float, t: float) -> tuple[float, float, float]:
-    """Return the factors on the areas normal to and along the axis, and the layer volume [m³]."""
+    """Return the factors by which biofouling increases the projected areas, and its volume [m³].
+
+    The first factor is for flow normal to the axis, and the second for flow along the axis. `kn` is
+    the normal drag at 1 m/s [N/(m/s)²], and `t` the layer thickness [m].
+    """
     if isinstance(component, files.Cylinder):
         d, length = component.diameter, component.length
         wide, long = d + 2.0 * t, length + 2.0 * t

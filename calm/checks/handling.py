@@ -42,7 +42,8 @@ def backup(handling: Handling) -> Iterator[Verdict]:
     """Check the net buoyancy that lifts the release after a break or the loss of a float.
 
     The remaining net buoyancy must be at least `backup_margin` × the lifted weight, and sufficient
-    for a rise at `minimum_rise_speed`. A compact line below a single float is not judged.
+    for a rise at `minimum_rise_speed`. A line with a single float is not judged if
+    `LegGraph.breaks` judges none of its breaks.
     """
     if handling.leg.file.release is None:
         if is_hauled_in(handling):

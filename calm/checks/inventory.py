@@ -20,8 +20,8 @@ class InventoryItem:
     ----------
     index : index of the piece, or of the piece that carries the clamp
     use : component id
-    clamped_on, at : label of the piece that carries the clamp, and distance of the clamp from the
-        upper end of that piece [m]; None for a piece
+    clamped_on : label of the piece that carries the clamp; None for a piece
+    at : distance of the clamp from the upper end of this piece [m]; None for a piece
     cut_length : length along the line [m]; None for a fitted cable that cannot reach its target
         depth
     dry_mass : mass in air [kg]

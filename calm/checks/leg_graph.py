@@ -40,11 +40,11 @@ class Break:
     Attributes
     ----------
     break_after, label : index and label of the piece above the break
-    margin, required : net buoyancy of the section with the release, after all releases open, and
-        its required value [N]
+    margin : net buoyancy of the section with the release after all releases open [N]
+    required : minimum required value of `margin` [N]
     weight_lifted : weight in water of the non-buoyant pieces in this section [N]
-    judged : False for a break that strands the release in any design
-    loose : net buoyancy of the section that drifts off before the releases open [N]
+    judged : False for a break after which no design of the line could bring up the release
+    loose : net buoyancy of the section that the break sets adrift before any release opens [N]
     """
 
     break_after: int
@@ -64,8 +64,8 @@ class Loss:
     ----------
     index : index of the lost piece, or of the piece that carries the lost clamp
     label, place : label of the lost element, and its place in the file
-    margin, required : net buoyancy of all pieces that rise with the release, and its required value
-        [N]
+    margin : net buoyancy of all pieces that rise with the release [N]
+    required : minimum required value of `margin` [N]
     weight_lifted : weight in water of the non-buoyant pieces that rise [N]
     """
 
@@ -85,7 +85,8 @@ class LegGraph:
     Parameters
     ----------
     legs : legs of the design; empty without an equilibrium
-    lifts : (n,) net forces of the pieces of each leg with their clamps, without the anchor [N]
+    lifts : one array (n,) per leg, with the net force of each piece above the anchor [N]; the
+        clamps on a piece are included
     """
 
     def __init__(self, legs: Sequence[Leg], lifts: Sequence[Floats]) -> None:
@@ -172,14 +173,14 @@ class LegGraph:
         """Return the breaks below every piece that surfaces, in file order.
 
         The margin of a break inside a cable lies between the margins of breaks at the two ends of
-        the cable. Breaks that strand the release in any design are not judged:
+        the cable. Breaks are not judged if no design of the line could bring up the release:
 
         - breaks inside the last cluster of floats above a release;
         - breaks between this cluster and the release, up to a distance of `SHORT_LEAD`.
 
-        Floats with only connectors and chain between them form a cluster. If no break remains to be
-        judged, chain divides clusters. `whole` contains all pieces as one leg, and supplies the
-        limits.
+        Floats with only connectors and chain between them form a cluster. If these exceptions cover
+        all breaks, floats with chain between them are separate clusters. `whole` contains all
+        pieces as one leg, and supplies the limits.
         """
         rising = {one for part in self._rising_parts(()) for one in part}
         before = {one for part in self._free_parts(()) for one in part}
@@ -217,7 +218,7 @@ class LegGraph:
     def _strands_release(
         self, chain: Sequence[Hashable], at: int, part: list[int], between: tuple[str, ...]
     ) -> bool:
-        """Return whether a break strands the release in any design.
+        """Return whether no design of the line could bring up the release after a break.
 
         `between` lists the kinds and roles of pieces that may lie between the floats of a cluster.
         """

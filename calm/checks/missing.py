@@ -32,7 +32,8 @@ def alternatives(quantity: str) -> tuple[str, ...]:
 def missing(lacking: Mapping[tuple[str, str], Sequence[Finding]]) -> Iterator[Verdict]:
     """Yield one verdict per component id and missing value, for all findings that lack the value.
 
-    The message is that of the finding with the largest value, such as the largest depth or load.
+    The message is copied from the finding with the largest value, such as the largest depth or
+    load.
     """
     for found in lacking.values():
         figure = found[0].missing

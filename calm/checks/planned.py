@@ -24,9 +24,9 @@ SHARE_OF_THE_PLAN = 0.02
 class PlannedPart:
     """Piece or clamp with a planned depth [m].
 
-    `least` and `most` are bounds on the depth in still water. The bounds differ only for a line
-    that is slack in still water: from the depth in the current to the depth on a straight vertical
-    line.
+    `least` and `most` are bounds on the depth in still water. The bounds differ only if the line is
+    slack in still water. Then `least` is the depth in the current, and `most` the depth on a line
+    that hangs straight down from the surface.
     """
 
     row: ComponentRow | ClampRow
@@ -137,8 +137,8 @@ def _amount(least: float, most: float) -> str:
 def _remedy(result: LegResult, parts: Sequence[PlannedPart], number: int) -> str:
     """Name the lengths to check for a part that is off its planned depth.
 
-    The error lies between the last part with the same depth error and the next part with a
-    different error, towards the fixed end.
+    The other parts are compared one by one, from this part towards the anchor or the surface. The
+    lengths to check lie between the first two neighbours whose depth errors differ.
     """
     above, allowed = (
         _hangs_from_above(result, parts[number]), result.file.checks.planned_depth_warning

@@ -19,8 +19,9 @@ LEAST_TOP_DEPTH = 10.0
 """Default minimum depth of the top of a sub-surface line [m]."""
 
 MOST_OF_A_RATING = 0.5
-"""Maximum margin on depth, as a fraction of the depth rating, so that shallow-water equipment can
-be used.
+"""Maximum margin on depth, as a fraction of the depth rating.
+
+Without this maximum, equipment with a small depth rating could not be used.
 """
 
 JUDGED_ROLES = ("float", "instrument", "release")
@@ -136,8 +137,9 @@ def _rating_words(
 
 
 _STRETCH = 0.02
-"""Stretch, as a fraction of the water depth, below which an unknown stretch is ignored: the error
-of a sounding.
+"""Largest possible stretch of a rope, as a fraction of the water depth, that may remain unknown.
+
+The value is the error of a sounding.
 """
 
 _MEASURED = 0.2

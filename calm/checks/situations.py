@@ -153,7 +153,7 @@ def _changed(
 
 
 def in_other_waters(file: MooringFile, water: Water) -> Iterator[tuple[str, MooringFile]]:
-    """Yield the name and the changed file of each situation with other water.
+    """Yield the name and the file of each situation with changed current or water depth.
 
     These are still water, still low water, high water and low water, as applicable.
     """
@@ -240,9 +240,10 @@ def differs(designed: MooringFile, deployed: MooringFile) -> bool:
 
 @rule("as-deployed", once=True, case="d")
 def deployed_depth(handling: Handling) -> Iterator[Verdict]:
-    """Check the depth of the top of the upright line, as deployed, against the design depth.
+    """Compare the top depth as deployed with the top depth of the design.
 
-    For a surface mooring, the change in water depth is checked instead.
+    Both depths are for the upright line. For a surface mooring, the water depths are compared
+    instead.
     """
     leg = handling.leg
     if leg.file.deployed is None:
@@ -335,13 +336,12 @@ USUAL_CURRENT = 0.2
 """Surface current driven by a wind of 7 m/s alone: 0.03 times the wind speed, DNV-RP-C205 [m/s]."""
 
 SHARE_OF_ITS_RECORD = 0.9
-"""Ratio of the design current to the strongest current of its record, below which the design
-current is too weak.
-"""
+"""Minimum ratio of the design current to the strongest current of the underlying record."""
 
 WEAK_BESIDE_OTHERS = 0.02
-"""Ratio of a current to the strongest of all environments, below which its unit is probably wrong;
-1/100 suggests cm/s.
+"""Ratio of a current to the strongest current of all environments, below which a unit is doubtful.
+
+A ratio near 1/100 suggests that speeds in cm/s and m/s were exchanged.
 """
 
 
@@ -349,8 +349,7 @@ WEAK_BESIDE_OTHERS = 0.02
 def currents(legs: Sequence[Leg]) -> Iterator[tuple[Leg, Verdict]]:
     """Check the strongest current, and report depths that current profiles do not cover.
 
-    `legs` contains one leg per environment. Each verdict is yielded with the leg in the affected
-    environment.
+    `legs` contains one leg per environment. Yield pairs of a leg and a verdict on its environment.
     """
     speeds = [float(np.hypot(each.water.u, each.water.v).max()) for each in legs]
     for leg, speed in zip(legs, speeds, strict=True):

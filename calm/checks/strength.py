@@ -51,7 +51,7 @@ def governing_load(
 
 
 def wanted_load(component: Component) -> str:
-    """Return the key of the load rating to request for a component without any load rating."""
+    """Return the key of the load rating to set in a component without any load rating."""
     return "breaking_load" if isinstance(component, Flexible) else "working_load"
 
 
@@ -233,10 +233,10 @@ def _is_estimated(component: Component) -> bool:
 def _steps(
     result: LegResult, loads: Sequence[float | None]
 ) -> Iterator[tuple[float, Piece, float, float]]:
-    """Compare each piece between two cables with the weaker cable.
+    """Compare the allowable load of each piece between two cables with that of the weaker cable.
 
-    Yield the ratio of the allowable loads of piece and cable, the piece, its allowable load [N],
-    and the allowable load of the cable [N].
+    Yield the allowable load of the piece divided by that of the cable, the piece, the allowable
+    load of the piece [N], and that of the cable [N].
     """
     # a chain is no reference: it is oversized to allow for wear
     cables = [
@@ -377,17 +377,19 @@ def anchor_sliding(leg: Leg) -> Iterator[Criterion]:
 
 
 ANCHOR_RULES = tuple(each.name for each in (anchor_weight, anchor_uplift, anchor_sliding))
-"""Rules that a sufficiently heavy anchor satisfies. An anchor with the weight required by the first
-rule satisfies all three rules in the same situation.
+"""Rules that a sufficiently heavy anchor satisfies.
+
+The weight that the first rule requires also satisfies the other two rules in the same situation.
 """
 
 
 def with_one_weight(
     findings: Iterable[Finding], governing: Mapping[Place | None, Finding]
 ) -> Iterator[Finding]:
-    """Yield the findings, with one common remedy for all findings on an anchor that is too light.
+    """Yield the findings, with the same remedy in all findings on an anchor that is too light.
 
-    The remedy states the largest required weight. `governing` is the result of `heaviest`.
+    This remedy states the largest required weight. `governing` holds the findings with these
+    remedies, as returned by `heaviest`.
     """
     for one in findings:
         lead = governing.get(one.place)
@@ -396,9 +398,9 @@ def with_one_weight(
 
 
 def heaviest(findings: Iterable[Finding]) -> dict[Place | None, Finding]:
-    """Return, by place of the anchor, the finding that requires the largest weight.
+    """Return for each anchor the finding that requires the largest anchor weight.
 
-    Only findings on an anchor that is too light count.
+    The keys are the places of the anchors. Anchors that are heavy enough are omitted.
     """
     found: dict[Place | None, Finding] = {}
     for one in findings:

@@ -68,7 +68,11 @@ def _model(component: model.ImportedComponent) -> Component | None:
 
 
 def _likeness(name: str, id: str, other: str) -> float:
-    """Return inf for equal names, 0 for different names, else the share of common words."""
+    """Rate the similarity of a component name to the id and name of a catalogue entry.
+
+    Return inf if the name is equal to the id or name of the entry, and 0 if they are not similar.
+    Otherwise, return the number of shared words divided by the number of all different words.
+    """
     if name.casefold() in (id, other.casefold()):
         return inf
     grades = [set(_GRADE.findall(text)) for text in (name, f"{id} {other}")]

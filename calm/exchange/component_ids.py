@@ -20,7 +20,7 @@ def _id_from_name(name: str) -> str:
 def ids_of(components: Iterable[ImportedComponent], taken: Iterable[str] = ()) -> dict[int, str]:
     """Choose an id in the mooring file for each component.
 
-    Return the ids by Python `id()` of the components. Components with equal values share an id. Ids
+    The result maps `id(component)` to the chosen id. Components with equal values share an id. Ids
     in `taken` are not used.
     """
     components = list(components)

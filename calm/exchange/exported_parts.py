@@ -92,11 +92,12 @@ class ExportedPart:
         return max(REFERENCE_DENSITY * volume - weighed, _LEAST_MASS * abs(weighed))
 
     def area(self, density: float | None = None, *, along: bool = False) -> float:
-        """Return drag coefficient times area [m²], per metre for a cable; tangential if `along`,
-        else normal.
+        """Return the drag area (drag coefficient times area) [m²], per metre for a cable or chain.
 
-        `density` is the uniform density of the water in the other program [kg/m³]. The drag in that
-        water equals the drag at the depth of the part. By default, the area is for reference water.
+        The drag area is tangential if `along` is true, and normal otherwise. `density` is the
+        uniform density of the water in the other program [kg/m³]. The drag area is scaled so that
+        the drag in this water equals that at the depth of the part. By default, the drag area is
+        for reference water.
         """
         own = (self.kt if along else self.kn) / (0.5 * REFERENCE_DENSITY)
         return own if density is None else own * self.density / density
@@ -185,7 +186,7 @@ class ExportedLine:
     Attributes
     ----------
     parts : parts without the anchor, from the top (of a tow: from the ship) down
-    anchor : the anchor, and the weight in water of anchor and clamps [N]; None for a tow
+    anchor : the anchor, and its weight in water with its clamps [N]; None for a tow
     depth : water depth [m]
     levels : current and density, from the surface down
     gravity : acceleration of gravity [m/s²]
@@ -193,7 +194,8 @@ class ExportedLine:
     tow : None for a mooring
     afloat : whether the line reaches the surface
     has_draft : whether the hull of the float is known
-    riding : net buoyancy in use and drag of the float, as fractions of the values when immersed
+    riding : used fraction of the net buoyancy of the float, and ratio of its drag to the drag when
+        immersed
     windage : wind area of the float [m²], and drag coefficient of this area
     omitted : features that no other program can represent
     solve : function that finds the equilibrium

@@ -149,7 +149,7 @@ def _exported_line(leg: Leg, solve: Solve) -> ExportedLine:
 def _at_the_surface(
     leg: Leg, solve: Solve
 ) -> tuple[bool, tuple[float, float], tuple[float, float]]:
-    """Return `afloat`, `riding` and `windage` of `ExportedLine`."""
+    """Return the values of the attributes `afloat`, `riding` and `windage` of `ExportedLine`."""
     below, line = (False, (1.0, 1.0), (0.0, 1.0)), leg.line
     if leg.towed:
         return below

@@ -131,9 +131,10 @@ def _instrument_from(
     seabed: float,
     factors: Mapping[str, float] = MappingProxyType({}),
 ) -> tuple[ListedInstrument, dict[str, str]]:
-    """Build an instrument from texts by kind (a key of `_COLUMNS`); also return mistakes by kind.
+    """Build an instrument from the texts of its columns; also return messages about mistakes.
 
-    `factors` convert the numbers of each kind to SI units.
+    `texts`, `factors` and the messages have the keys of `_COLUMNS`. `factors` convert numbers to SI
+    units.
     """
     figures, times, wrong = dict[str, float](), dict[str, np.datetime64](), dict[str, str]()
     compared = not all(is_gap(texts.get(kind, "")) for kind in ("clock", "true"))

@@ -229,7 +229,10 @@ def _read_hdf5(content: bytes, wanted: Collection[str]) -> dict[str, MatValue]:
 
 
 def _variable(file: Any, node: Any, depth: int) -> MatValue:
-    """Read a dataset as written by MATLAB, or a group as written by Octave."""
+    """Read a variable, which MATLAB stores as an HDF5 dataset and Octave as a group.
+
+    `depth` is the number of cell arrays around the variable.
+    """
     import h5py
 
     if depth > _DEEPEST:

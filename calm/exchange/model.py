@@ -223,9 +223,9 @@ class ImportedDesign:
     guessed : remarks on guesses, except for values of a component
     dropped : remarks on contents that CALM cannot use
     notes : further comments at the head of the mooring file
-    heading : further keys of the mooring file, as text
+    heading : values of further keys at the head of the mooring file, as text
     in_kilograms : whether the file gives forces in kilograms-force
-    sunken : replacement of the uppermost component, if the float is submerged in still water
+    sunken : component that replaces the uppermost float if it is submerged in still water
     understood : interpretation of an ambiguous format, as text
     """
 

@@ -90,8 +90,9 @@ def read_oceanarray(path: Path, options: model.ImportOptions) -> model.ImportedD
 def listed_instruments(path: Path) -> list[tuple[int, str, str, float, Mapping[str, Any]]]:
     """List the instruments of a file that have a serial number and a height.
 
-    Each tuple has line number, label, serial number, height above the seabed [m] and keys. The keys
-    include the `recovery_time` of the file. Raise InputError if the file is damaged.
+    Each tuple has line number, label, serial number, height above the seabed [m], and the keys and
+    values of the item in the file. The `recovery_time` of the file is added to these values. Raise
+    InputError if the file is damaged.
     """
     document, problems = read_document(path), list[Problem]()
     reading = _Reading(document, problems)

@@ -35,8 +35,9 @@ _NAMES = {
 
 _HEAVY = 20.0  # N: maximum weight of connecting hardware, whatever its name
 _LONG, _SLENDER = 3.0, 60.0
-"""Minimum length [m] and minimum number of diameters: any piece above both is a line, whatever its
-name.
+"""Minimum length [m] and minimum ratio of length to diameter of a line.
+
+A piece that reaches both limits is a line, unless its name denotes a release or a connector.
 """
 
 _LONGEST_PIECE = 20.0  # m: maximum length of a rigid piece

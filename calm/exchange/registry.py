@@ -1,7 +1,7 @@
 """Registry of file formats: recognition, readers and writers.
 
-A format is a module that calls `register_format` when the module is imported, at the first use.
-Other packages list such modules in the entry point ``calm.formats``.
+A format is a module that calls `register_format`. CALM imports this module when the format is first
+used. Other packages list such modules in the entry point ``calm.formats``.
 """
 
 from __future__ import annotations

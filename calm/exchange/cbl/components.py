@@ -188,9 +188,10 @@ class ComponentMaker:
         return component
 
     def _at_reference(self, wet: float, mass: float) -> tuple[float, float]:
-        """Convert a weight from the file's water to reference water; also return the mass.
+        """Convert a weight in the water of the file to reference water [N]; also return the mass.
 
-        If the mass is impossible, the weight is unchanged and the returned mass is 0.
+        If the mass is missing, or is too small for the weight, the weight is not converted and a
+        mass of 0 is returned.
         """
         if mass * KILOGRAM_FORCE < wet or mass <= 0.0:
             return wet, 0.0

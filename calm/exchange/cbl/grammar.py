@@ -25,7 +25,7 @@ _SECTIONS = {
     "connectors": "connectors", "materials": "materials", "layout": "layout", "end": "",
     "problem": "description", "analysis": "analysis",
 }  # fmt: skip
-"""Attribute of a problem that holds each section."""
+"""Attributes of `CableProblem` that store the sections, by section name."""
 
 _LONG_SECTIONS = {"problem": "description", "analysis": "parameters"}
 """Second words of two-word section names."""
@@ -53,8 +53,8 @@ class KeyValue:
     def at(self, depth: float) -> float:
         """Evaluate the formula or table at a depth.
 
-        In a table of speeds or strains, `depth` is a speed or a strain. A table is interpolated
-        linearly, and extrapolated beyond the ends.
+        If the first column of a table has speeds or strains, `depth` is a speed or strain instead.
+        A table is interpolated linearly, and extrapolated beyond its ends.
         """
         if not self.rows:
             return self.number(H=depth, h=depth, t=0.0)

@@ -27,8 +27,8 @@ _End = grammar.CableTerminal | str
 class CableLayout:
     """Converter of the layout in a problem file to pieces, or to legs of a net.
 
-    Pieces and legs are added to `design`, whose water determines variable drag. `nodes` counts the
-    nodes of the net so far.
+    Pieces and legs are added to `design`. Drag that varies with depth or speed is evaluated in the
+    water of `design`. `nodes` is the number of nodes created so far.
     """
 
     problem: grammar.CableProblem
@@ -248,7 +248,10 @@ class CableLayout:
         self.design.lay([*last, *items, *first], upper, lower)
 
     def _end(self, at: _End) -> tuple[list[model.ImportedPiece], str, bool]:
-        """Return the pieces and the connection at an end of a leg; the flag marks a lower end."""
+        """Return the pieces and the connection at an end of a leg.
+
+        The third item is true if the end is a lower end.
+        """
         if isinstance(at, str):
             return [], model.joined_at(at), False
         values, token = at.values, at.token

@@ -218,9 +218,9 @@ def _arguments(text: str, at: int) -> tuple[list[str], int]:
 
 
 def _without_comments(text: str, path: str) -> list[str]:
-    """Remove comments, keeping the number of lines.
+    """Remove comments and join lines that end in a backslash with the next line.
 
-    Lines that end in a backslash are joined with the next line, and followed by empty lines.
+    Empty lines replace the joined lines, so that line numbers do not change.
     """
     pieces: list[str] = []
     at = 0

@@ -57,7 +57,7 @@ _WAVES = ("x-wave", "y-wave", "x-input", "y-input", "z-input", "wave-file")
 _DYNAMICS = ("forcing-method", "input-type", "velocity-file", "force-file")
 _SEABED = ("bottom-stiffness", "bottom-damping", "bottom-elevation")
 _Profile = tuple[Callable[[float], float], list[float]]
-"""Speed as a function of depth, and depths between which this function is linear."""
+"""Speed as a function of depth, and the depths at which the slope of this function changes."""
 
 _LARGEST = 20_000_000  # bytes
 _MOST = 2_000_000  # speeds
@@ -203,7 +203,11 @@ def _water_of(problem: CableProblem, dropped: list[model.Remark]) -> model.Impor
 def _current(
     axes: list[_Profile | None], angle: float, deepest: float
 ) -> tuple[tuple[float, float, float, float], ...]:
-    """Return rows of depth [m] and velocity in x (east), y (north) and z (up) [m/s] at time 0."""
+    """Return rows of depth [m] and velocity (east, north, up) [m/s] at time 0.
+
+    `axes` are the profiles along x, y and z, `angle` is the rotation of x and y [rad], and
+    `deepest` the depth of the last row [m].
+    """
 
     def at(depth: float) -> tuple[float, float, float]:
         x, y, z = (0.0 if axis is None else axis[0](depth) for axis in axes)
@@ -268,8 +272,9 @@ def _gridded_current(
 ) -> _Grid | None:
     """Read a current file; return None if the file does not exist.
 
-    Step, start and count of time, depth, x and y come first, then speeds in x, y and z. Depth
-    varies fastest, then x, y and time.
+    The file begins with step, start and count of the time, then of depth, x and y. The velocities
+    follow, each with components x, y and z. In their order, depth varies fastest, then x, y and
+    time.
     """
     folder = problem.path.parent
     path, outside = folder / value.text, problem.options.allow_include

@@ -303,7 +303,8 @@ def _windage_keys(part: ExportedPart, design: ExportedLine) -> str:
 def _drag_share(design: ExportedLine, hull: Hull, mass: float, net: float, most: float) -> float:
     """Return the factor on a hull's drag coefficient that gives the drag computed by CALM.
 
-    `net` is the net buoyancy in use, and `most` the buoyancy of the whole hull [N].
+    `net` is the net buoyancy of the immersed float [N]. `most` is the weight of the water that the
+    whole hull displaces [N].
     """
     used, seen = design.riding
     immersed = min(max((mass * design.gravity + used * net) / most, 0.0), 1.0)

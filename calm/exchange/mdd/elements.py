@@ -24,8 +24,9 @@ GROUPS = ("floats", "wires", "chains", "acrels", "cms", "anchors", "miscs")
 """Library variables that hold elements."""
 
 MODULI = (1.38e11, 3.45e8, 8.0e8, 3.45e8, 6.9e8, 6.9e10, 7.6e10, 1.0e11)
-"""Elastic moduli of the materials numbered from 1 in the files [Pa]: steel, nylon, Dacron,
-polypropylene, polyethylene, Kevlar, aluminium, Dyneema.
+"""Elastic moduli [Pa] of the materials 1 to 8 in the files.
+
+The materials are steel, nylon, Dacron, polypropylene, polyethylene, Kevlar, aluminium and Dyneema.
 """
 
 
@@ -71,10 +72,10 @@ def rigid(element: MddElement) -> model.ImportedComponent:
 
 
 def rides_by_buoyancy(component: model.ImportedComponent) -> None:
-    """Give a surface float a hull whose draft and drag are proportional to the buoyancy in use.
+    """Give a surface float a hull as in Mooring Design & Dynamics.
 
-    The hull, as in Mooring Design & Dynamics, displaces only as much water as the net buoyancy
-    requires.
+    Draft and drag of this hull are proportional to the used buoyancy, which is the part of the net
+    buoyancy that carries the line. The whole hull displaces just enough water for the net buoyancy.
     """
     lift, height = component.number("buoyancy"), component.number("length")
     if component.kind not in ("sphere", "cylinder", "body") or lift <= 0.0:

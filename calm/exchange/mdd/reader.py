@@ -153,10 +153,10 @@ def _attach_clamps(
 def _position_by_share(
     design: model.ImportedDesign, host: float, share: float
 ) -> tuple[int, float] | None:
-    """Return the index of a clamp's piece, and the distance from the piece's upper end [m].
+    """Return the index of the piece that carries a clamp, and the distance from its upper end [m].
 
-    `host` numbers the element, and `share` is the fraction of the element below the clamp. Return
-    None if `host` or `share` is out of range.
+    `host` is the number of the element that carries the clamp, and `share` the fraction of this
+    element below the clamp. Return None if `host` or `share` is out of range.
     """
     count, number = len(design.items), round(host) - 1
     if design.tow is not None:

@@ -58,7 +58,10 @@ def read_water(
 
 
 def _profiles(variables: MatVariables, name: str, levels: int) -> RealArray | None:
-    """Read profiles as (levels, times); in the file, either dimension may come first."""
+    """Return profiles as an array (levels, times).
+
+    In the file, either dimension may come first.
+    """
     values = variables.reals(name)
     if values.size == 0:
         return None
@@ -86,7 +89,7 @@ def _filled(values: RealArray | None, name: str, levels: int, times: int) -> Rea
 
 
 def _days(time: RealArray, times: int, guessed: list[model.Remark]) -> tuple[RealArray, str]:
-    """Return the times in days, and the date of day 0."""
+    """Return the times of the profiles in days, and the date of day 0."""
     if time.size != times:
         guessed.append(
             model.Remark(

@@ -92,7 +92,7 @@ def _column(part: ExportedPart, lost: list[str]) -> tuple[float, ...]:
 
 
 def _size(part: ExportedPart, lost: list[str]) -> tuple[float, float, float]:
-    """Return width, diameter and Cd for which an element has the drag of a rigid part."""
+    """Return width, diameter and Cd of an element with the same drag as a rigid part."""
     component = part.component
     if part.kn == 0.0:
         return 0.0, 0.0, 0.0
@@ -119,8 +119,8 @@ def _size(part: ExportedPart, lost: list[str]) -> tuple[float, float, float]:
 def _clamped(design: ExportedLine, lost: list[str]) -> dict[str, object]:
     """Return the variables for clamped parts, from the top down.
 
-    `Jobj` is the number of the host element, `Pobj` the fraction of the element's length below the
-    clamp, and `ZCO` the height of the clamp [m].
+    `Jobj` is the number of the element that carries the clamp. `Pobj` is the fraction of this
+    element's length below the clamp, and `ZCO` the height of the clamp [m].
     """
     rows, names, places = [], [], []
     count = len(design.parts)

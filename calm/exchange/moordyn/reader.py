@@ -76,9 +76,10 @@ class _File:
     def walk(
         self, start: str, left: list[_Row], breaks: Collection[str]
     ) -> tuple[list[str], list[_Row]]:
-        """Follow lines from a point to a point in `breaks`, or to the end.
+        """Follow lines from the point `start` to the next point in `breaks`, or to the last point.
 
-        Return the points and lines passed; these lines are removed from `left`.
+        Only lines in `left` are followed. Return the points and lines on the path, and remove these
+        lines from `left`.
         """
         names, lines = [start], list[_Row]()
         while not lines or names[-1] not in breaks:
@@ -94,9 +95,10 @@ class _File:
     def along(
         self, names: list[str], lines: list[_Row], placed: set[str]
     ) -> list[model.ImportedPiece]:
-        """Convert lines, and the parts at their points, to pieces in order.
+        """Convert successive lines, and the buoys or weights at their points, to pieces in order.
 
-        The part at a point in `placed` is omitted. All points are added to `placed`.
+        `names` are the points along these lines. Points in `placed` are already converted and give
+        no piece. All points in `names` are added to `placed`.
         """
         items: list[model.ImportedPiece] = []
         for at, line in zip(names, [*lines, None], strict=True):

@@ -40,7 +40,7 @@ class _Point:
 
 @dataclass
 class _Length:
-    """An unstretched length [m] of a line type between two points."""
+    """A line of MoorDyn between two points: line type and unstretched length [m]."""
 
     type: str
     lower: _Point
@@ -50,9 +50,9 @@ class _Length:
 
 @dataclass
 class _System:
-    """Contents of the file, collected leg by leg, each leg from its lower end up.
+    """Contents of the MoorDyn file, collected leg by leg, each leg from its lower end up.
 
-    `here` is the point to which the next length is attached.
+    `here` is the point to which the next line is attached.
     """
 
     density: float
@@ -206,9 +206,9 @@ def _lay_rigid(system: _System, parts: list[ExportedPart], top: Coordinates) -> 
 
 
 def _lay_float(system: _System, design: ExportedLine, path: Floats) -> None:
-    """Add the uppermost piece: a point above a stiff length for the draft of the piece.
+    """Add the uppermost piece as a point at its top and a stiff line for its immersed length.
 
-    The length is neutrally buoyant and has a share of the mass of the piece.
+    The stiff line is neutrally buoyant, and has half of the mass. The point has the other half.
     """
     part = design.parts[0]
     top, bottom = place_along(path, 0.0), place_along(path, 1.0)

@@ -235,7 +235,11 @@ def number(cell: str, decimal: str = "") -> CellNumber:
 
 
 def _signs(digits: str) -> tuple[str, str]:
-    """Return the decimal sign of a numeral, and a sign that may mark decimals or thousands."""
+    """Return the decimal symbol of a number, and a symbol of unclear meaning.
+
+    The symbol is unclear in numbers such as `1,250`, and may then mark decimals or thousands. A
+    symbol that is absent or unknown is empty.
+    """
     plain = re.sub(r"['’\s]", "", digits)
     present = [sign for sign in ".," if sign in plain]
     if len(present) == 2:
@@ -255,10 +259,11 @@ def _either(digits: str) -> str:
 
 
 def decimal_sign(cells: Iterable[tuple[str, str]]) -> tuple[str, str]:
-    """Find the decimal symbol of a file; also return a remark on commas, empty without commas.
+    """Find the decimal symbol of a file; also return a remark on the meaning of commas.
 
-    `cells` yields the position and text of each cell that should have a number. Raise ValueError if
-    the numbers are contradictory, or ambiguous like `1,250`.
+    The remark is empty if the commas need no explanation. `cells` yields the position and text of
+    each cell that should have a number. Raise ValueError if the numbers are contradictory, or
+    ambiguous like `1,250`.
     """
     seen: dict[str, str] = {}
     doubtful: dict[str, tuple[str, str]] = {}  # position, and digits
@@ -305,7 +310,13 @@ def is_table(content: bytes) -> bool:
 
 
 class ReadSheets(NamedTuple):
-    """Rows of each sheet, and a description of the hidden parts of each sheet, by sheet name."""
+    """Rows and hidden parts of the sheets in a file.
+
+    Attributes
+    ----------
+    rows : rows of cells, by sheet name
+    hidden : description of the hidden parts, by sheet name
+    """
 
     rows: dict[str, SheetRows]
     hidden: dict[str, str]

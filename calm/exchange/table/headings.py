@@ -94,7 +94,7 @@ class ListColumn:
     by_mass : whether forces are in kilograms
     per_metre : whether the values of lines are per metre
     known : whether the heading has a unit
-    whole : whether values are totals, for all pieces in a row or for the whole line
+    whole : whether a value is a total for all pieces in a row, or for the whole length of a line
     wrong : message about a mistake in the heading, or empty
     twin : second column for the same quantity; one column is per metre, the other per piece
     """
@@ -154,8 +154,8 @@ class ListHeadings:
 def headings_of(rows: SheetRows, given: Mapping[str, str]) -> ListHeadings | None:
     """Find the headings of a sheet, or return None.
 
-    The row of headings needs a name and a length, a mass or a force. Columns in `given` take
-    precedence over recognised columns.
+    The row of headings must have a column of names, and a column of lengths, masses or forces.
+    Columns in `given` take precedence over recognised columns.
     """
     best, highest = None, (0, 0)
     for i in range(min(len(rows), _SEARCHED)):
@@ -335,8 +335,8 @@ def cell_of(row: list[str], column: ListColumn | None) -> str:
 def decimals_of(cells: SheetRows, headings: ListHeadings, problems: list[str]) -> tuple[str, str]:
     """Find the decimal symbol in the columns of numbers; also return a remark on the commas.
 
-    If the numbers are contradictory or ambiguous, a message is added to `problems`, and both
-    results are empty.
+    If the numbers are contradictory or ambiguous, a message is added to `problems`, and symbol and
+    remark are empty.
     """
     figures = [column for what, column in headings.columns.items() if what not in WORDS]
     try:

@@ -38,8 +38,9 @@ _FITTING = 1.0  # m: a shorter connector is a fitting, not a rope
 class ListRow:
     """A row of a list: name, values in SI units, count, and guesses.
 
-    `metre` has the names of the values that are per metre. `line` is whether the row is a cable or
-    chain; if None, role, kind and name decide.
+    `metre` contains the keys of the values in `figures` that are per metre. `line` is true for a
+    cable or chain, and false for another part. If `line` is None, CALM decides by role, kind and
+    name.
     """
 
     place: int
@@ -103,7 +104,8 @@ def rows_of(
 ) -> list[ListRow]:
     """Read the rows below the headings; rows with totals or without values are added to `dropped`.
 
-    `bare` decides whether a row with only a name is a piece, because a library has the values.
+    `bare` is a function of a name. It returns true if a row with only this name is a piece, because
+    a library has the values.
     """
     rows: list[ListRow] = []
     known = headings.columns
@@ -225,8 +227,9 @@ def growing_lengths(rows: Iterable[ListRow]) -> list[str]:
 def weights_as_buoyancy(rows: Iterable[ListRow], guessed: list[model.Remark]) -> None:
     """Convert weights to net buoyancy, positive up.
 
-    Weights are positive down, unless most sinking parts have negative weights. Buoyancies are
-    positive up, unless all sinking parts have positive and all other parts have negative values.
+    A weight is read as positive down. If most sinking parts have negative weights, all weights are
+    read as positive up. A buoyancy is read as positive up. If all sinking parts have a positive
+    buoyancy and all other parts a negative one, all buoyancies are read as positive down.
     """
     rows = list(rows)
     sinking = [row.figures["weight"] for row in rows if row.sinks and row.figures.get("weight")]
@@ -253,7 +256,10 @@ def weights_as_buoyancy(rows: Iterable[ListRow], guessed: list[model.Remark]) ->
 
 
 def count_lines(rows: Iterable[ListRow], known: dict[str, ListColumn]) -> None:
-    """Convert values of lines to values per metre if the list gives totals for the whole length."""
+    """Convert the values of cables and chains to values per metre.
+
+    Values are divided by the length of the cable or chain, unless they already are per metre.
+    """
     lines = [row for row in rows if row.is_line and row.figure("length") > 0.0]
     for what in _SPREAD:
         column = known.get(what) or (known.get("weight") if what == "buoyancy" else None)
@@ -280,9 +286,9 @@ def count_lines(rows: Iterable[ListRow], known: dict[str, ListColumn]) -> None:
 
 
 def _same_for_all(lines: list[ListRow], what: str) -> bool:
-    """True if lines of the same name have equal values although their lengths differ.
+    """True if cables or chains of the same name have equal values but different lengths.
 
-    Such values are per metre.
+    Values that do not depend on the length are per metre.
     """
     seen: dict[str, tuple[float, float]] = {}
     for row in lines:
