@@ -124,8 +124,8 @@ def from_one(**given: int | None) -> None:
 def span_of(option: str, text: str, between: tuple[float, float], in_words: str) -> np.timedelta64:
     """Parse a duration given as an option, such as ``2 h``.
 
-    The allowed range is `between` [s], which the message states as `in_words`. Raises UsageError if
-    the text is not a duration in this range.
+    `between` is the allowed range [s], and `in_words` is the text for this range in the message.
+    Raises UsageError if the text is not a duration in this range.
     """
     import numpy as np
 

@@ -20,7 +20,7 @@ class ReadCurrents:
 
 @dataclass(frozen=True)
 class Linear:
-    """Depths of the points, linearised about currents with given factors."""
+    """Linear model of the depths of the points, for small changes of the factors on the currents."""
 
     logs: Floats  # (n, g) the state: logarithms of the factors on the currents
     depth: Floats  # (n, p) depths at the state [m]
@@ -28,7 +28,7 @@ class Linear:
     common: Floats  # (n, p, f) derivatives with respect to the logarithms of the common factors
 
     def moved(self, logs: Floats, depth: Floats) -> Linear:
-        """Return the linear model at new logarithms of the factors, with known depths.
+        """Return the linear model at a new state `logs`, where the depths are `depth`.
 
         The slopes are updated by Broyden's method.
         """
@@ -51,6 +51,9 @@ class SpeedLaw:
     kept: Linear | None = None
 
     def read(self, level: Floats) -> ReadCurrents:
-        """Return the mean speeds as currents to the east, at the depths (n, k) [m]."""
+        """Return eastward currents with the median speeds of the distribution.
+
+        `level` (n, k) are the depths of the knots [m].
+        """
         u = np.tile(np.exp(self.mean), (len(level), 1))
         return ReadCurrents(level, u, np.zeros_like(u))
