@@ -91,7 +91,7 @@ class Elements:
 
 @dataclass(frozen=True)
 class FloatOnChain:
-    """Properties of the uppermost float when it floats at the surface, tabulated against its draft.
+    """Properties of the uppermost float, afloat at the surface, tabulated against its draft.
 
     Attributes
     ----------
@@ -122,7 +122,8 @@ class BarChain:
     length : (n,) unstretched length of the bars [m]
     piece : (n,) index of the piece that each bar represents; of several rigid pieces, the last
     compliance : (n,) strain per unit tension, 1/EA [1/N]
-    elongation : for every cable with an elongation curve, indices of its bars and knots of the curve
+    elongation : for every cable with an elongation curve, indices of its bars, and knots of the
+        curve
     bars : (p, 2) first bar of every piece, and the bar after its last bar; for a piece without
         length, both are the adjacent bar
     span : (p, 2) position of each piece's upper end on its first bar, and of its lower end on its

@@ -20,7 +20,7 @@ class ReadCurrents:
 
 @dataclass(frozen=True)
 class Linear:
-    """Linear model of the depths of the points, for small changes of the factors on the currents."""
+    """Linear model of the depths of the points, as functions of factors on the currents."""
 
     logs: Floats  # (n, g) the state: logarithms of the factors on the currents
     depth: Floats  # (n, p) depths at the state [m]
@@ -46,7 +46,7 @@ class SpeedLaw:
 
     mean: Floats  # (k,) mean of the logarithms of the speeds [m/s]
     covariance: Floats  # (k, k) covariance of these logarithms
-    # stored models of the line: first at the mean speeds, then at the times from which the
+    # stored models of the line: first at the median speeds, then at the times from which the
     # distribution was learnt; their states are relative to `mean`
     kept: Linear | None = None
 

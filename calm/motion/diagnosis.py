@@ -43,8 +43,9 @@ LEAST = {
 }  # fmt: skip
 """Smallest faults that are reported.
 
-Units: m for `moved`, `offset`, `drift` and `slip`; for `clock`, hours or time steps of the record,
-whichever are longer; 1 for `gain`; logarithm of a factor for the other kinds.
+The values for `moved`, `offset`, `drift` and `slip` are in m. The value for `clock` is in hours, or
+in time steps of the record if these are longer than an hour. The value for `gain` is a pure number.
+The other values are logarithms of factors.
 """
 RIVALS = 3  # maximum number of rival explanations reported
 FINEST = 0.02  # uncertainty added to the lag of a clock, as a share of the time step of the record

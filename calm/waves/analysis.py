@@ -118,9 +118,10 @@ class _Setting:
         return respond(self.line, self.buoy, waves, sea, drag_factor=drag, first=first, once=once)
 
     def cut_offs(self, sea: SeaState, response: WaveResponse, flow: Floats) -> CutOffs:
-        """Compute the responses for half and for twice the cut-off frequency of a response.
+        """Return the responses to a sea state for three cut-off frequencies of the waves.
 
-        All three responses use the same linearised drag.
+        These are the cut-off frequency of `response`, half of this frequency, and twice this
+        frequency. All three responses have the linearised drag for `flow`.
         """
         last = float(response.omega[-1])
         count = int(np.ceil(np.log(2.0) / np.log(last / float(response.omega[-2])))) + 1

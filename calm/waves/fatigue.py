@@ -57,9 +57,9 @@ class FatigueCurve:
     Attributes
     ----------
     slope, logarithm : exponent m, and log10 of K at zero mean tension
-    by_mean : decrease of log10 K for a mean tension equal to the breaking load
-    range : meaning of R: range of `stress` in the steel [MPa], or range of tension as a `share` of
-        the breaking load
+    by_mean : decrease of log10 K if the mean tension rises from zero to the breaking load
+    range : quantity R: ``stress`` for the range of the stress in the steel [MPa], ``share`` for the
+        range of the tension divided by the breaking load
     source : publication that gives the curve
     """
 
