@@ -250,7 +250,11 @@ class LengthSearch:
         return [piece for piece in found if piece is not None]
 
     def _polished(self, start: float, end: float) -> Piece | None:
-        """Find the root that Powell's method reaches from a starting point, or None."""
+        """Return the piece with both ratios that Powell's method finds from a starting point.
+
+        `start` and `end` are the values of λ at the ends of the initial piece. The result is None
+        if the method does not converge.
+        """
         from scipy.optimize import root
 
         least, farthest = abs(start) * _LEAST_RISE, 3.0 * reach(self.branch)

@@ -94,8 +94,9 @@ def show_units(given: str | None, files: Iterable[MooringFile] = ()) -> None:
 def quantities(**given: tuple[str | None, str]) -> dict[str, float]:
     """Convert quantities given as options to SI units and degrees.
 
-    Each parameter is the text of the option (None if absent) and its dimension. Raises UsageError
-    with all invalid texts.
+    Each keyword gives the text of one option and the dimension of its quantity. The text is None if
+    the option is absent. The result has the values by keyword. Raises UsageError; its message lists
+    all invalid texts.
     """
     from calm.units import QuantityError, parse_quantity
 

@@ -112,8 +112,8 @@ def piece_ends(chain: BarChain, state: ChainState) -> tuple[Floats, Floats]:
 def end_tensions(mover: Mover, state: ChainState, *, within: bool = False) -> Floats:
     """Return the tensions (n, 2) at the upper and the lower end of every bar [N].
 
-    A bar under compression has zero tension. If `within` is true, loads exactly at the ends of a
-    bar are excluded.
+    A bar under compression has zero tension. If `within` is true, the tensions do not include loads
+    exactly at the ends of a bar.
     """
     on = mover.chain.elements
     strain, _ = mover.strain(state.tension)

@@ -264,8 +264,9 @@ def estimate(field: GriddedQuantity, levels: Floats, times: NDArray[np.int64]) -
 def _likeliest(field: GriddedQuantity, times: NDArray[np.int64]) -> Scales:
     """Find the most likely correlation scales, from the samples at the given time indices.
 
-    A weak prior has the medians: a quarter of the line, six time steps, and 2 % uncorrelated
-    variance. The prior standard deviation is a factor of five for each scale.
+    The scales have a weak prior. Its medians are a quarter of the depth range of the samples, six
+    time steps, and 2 % uncorrelated variance. Its standard deviation is a factor of five for each
+    scale.
     """
     from scipy.optimize import minimize
 

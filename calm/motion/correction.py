@@ -289,7 +289,10 @@ class MeasuredRecord(Record):
         self.time, self.source, self.notes = measured.time, dict(source), tuple(notes)
 
     def profiles(self, start: int, stop: int) -> Levels:
-        """Return the levels of profiles as `Record.profiles` does; depths on the line are NaN."""
+        """Return depths and currents of the levels, in the form of `Record.profiles`.
+
+        The depth of a level that moves with the line is NaN.
+        """
         one = self._measured.at(slice(start, stop))
         return one.level_depth, one.u, one.v, None
 

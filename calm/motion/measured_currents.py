@@ -90,7 +90,10 @@ FURTHEST = 0.7  # maximum logarithm of a factor
 
 @dataclass(frozen=True)
 class Knots:
-    """Depths (interpolation knots) at which the current is estimated, and weights at the levels."""
+    """Depths at which the current is estimated, and weights for interpolation to the levels.
+
+    These depths are interpolation knots.
+    """
 
     depth: Floats  # (K,) depths of the knots in still water, increasing [m]
     level: Floats  # (k, K) weights with which the knots contribute to the current at each level
@@ -305,7 +308,10 @@ class CurrentSmoother:
         return self._forwards[key]
 
     def linear(self) -> Floats:
-        """Return depths (n, p) of the points [m], and update derivatives for changed currents."""
+        """Return the depths (n, p) of the points in the estimated currents [m].
+
+        If the currents or the factors have changed much, their derivatives are updated, too.
+        """
         now, factor = self.state[:, self.columns.current], self.factor
         far = np.abs(now - self._slopes_at).max(axis=1) > STALE
         far |= (np.abs(factor - self._slopes_factor) > FACTOR_STEP).any()

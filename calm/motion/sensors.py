@@ -322,9 +322,9 @@ EXPLAINED, BEYOND, LEAST = 0.05, 0.2, 1.0
 def metre_notes(measured: Floats, expected: Floats, latitude: float) -> list[str]:
     """Return a remark if depths in metres seem to be recorded as pressures in dbar, or the reverse.
 
-    The measured depths (s,) are then about 1 % less or more than the expected depths (s,) [m],
-    which must not depend on these readings. After conversion, the depths must agree without a
-    common offset.
+    Such readings give measured depths (s,) that differ by about 1 % from the expected depths (s,)
+    [m]. The expected depths must not depend on these readings. A remark is returned only if the
+    depths agree after conversion of the unit, without a common offset.
     """
     off = measured - expected
     if len(off) < 2 or not rms(off) > LEAST:

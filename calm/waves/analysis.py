@@ -226,7 +226,8 @@ def _settled(
 ) -> tuple[_Setting, Floats, WaveAccuracy]:
     """Refine elements and frequencies until they suffice for all given sea states.
 
-    Return the setting, the flow past the nodes in the first sea, and the remaining error.
+    Return the refined line with its float and waves, the flow past the nodes in the first sea
+    state, and the remaining error.
     """
     density = leg.water.density_at(np.array(0.0))
     water = Waves(np.zeros(0), toward, leg.water.depth, float(density), leg.water.gravity)
