@@ -121,7 +121,7 @@ EXTRAS: dict[str, tuple[str, ...]] = {
 def how_to_install(missing: ModuleNotFoundError) -> str | None:
     """Return a message that names a missing library and the command that installs the library.
 
-    The result is None if the module is part of CALM or has no name, as in a program error.
+    The result is None if the module is part of CALM or has no name. This is an error in CALM.
     """
     library = (missing.name or "").partition(".")[0]
     if library in ("", "calm"):

@@ -261,9 +261,10 @@ def family(what: str) -> NoEquilibrium:
 
 
 def contradiction(known: Mapping[str, float]) -> NoEquilibrium | None:
-    """Return the reason why a sinking cable cannot have the given quantities at any K.
+    """Check the given quantities of a sinking cable for faults that do not depend on K.
 
-    The result is None if there is no such reason. The messages are also valid for a buoyant cable.
+    Quantities are faulty if they contradict each other or are not independent. The result is None
+    if there is no fault. The messages are also valid for a buoyant cable.
     """
     below, above = known.get("tension_a"), known.get("tension_b")
     height, distance = known.get("height", 0.0), known.get("distance", 0.0)

@@ -21,8 +21,8 @@ Piece = tuple[float, float]
 Path = Callable[[Floats], tuple[Floats, Floats]]
 
 _FINEST = 1e-10
-"""Smallest step of a search grid, as a fraction of the range of the grid. Shorter parts of
-the curve are straight within rounding.
+"""Smallest step of a search grid, as a fraction of the range of the grid. Shorter parts of the
+curve are straight within rounding.
 """
 
 _POINTS = 240

@@ -1,8 +1,9 @@
 """A line as a chain of straight bars between nodes, and the loads on the bars.
 
-A cable or chain is divided into bars. A rigid piece is one bar. The first buoyant piece and
-the rigid pieces above it share one bar. A bar carries loads: rigid pieces, clamps, or a part of a
-cable or chain. The force of a load is distributed to the two nodes of its bar by the lever rule.
+A cable or chain is divided into bars. A rigid piece is one bar. At the free end, the first buoyant
+piece and the rigid pieces above it share one bar. A bar carries loads: rigid pieces, clamps, or a
+part of a cable or chain. The force of a load is distributed to the two nodes of its bar by the
+lever rule.
 """
 
 from dataclasses import dataclass

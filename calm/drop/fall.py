@@ -26,7 +26,9 @@ UNMOVED = 1e-10
 to rounding, and the longest time step is next.
 """
 MAX_STEP = 1e6
-"""Longest time step [s]. A line is tested for rest after a step of this length."""
+"""Limit of the time step [s]. A settling line is tested for rest when its growing time step reaches
+this limit.
+"""
 SLOWEST_FLOW = 0.01
 """Lowest flow speed that is tried to shorten the distance over which a line streams [m/s]."""
 STREAMED_WITHIN = 1e-4

@@ -1,8 +1,8 @@
 """Unknowns that are common to a whole record.
 
-These unknowns are factors on the drag, buoyancy and lengths of the line, the datum, and the sensor
-offsets. The datum is a depth error that all sensors share. The linear model of the readings is also
-used to find sensor faults: slips, drifts and common steps.
+The unknowns are factors on the line (drag, buoyancy, lengths), the datum, and the sensor offsets.
+The datum is a depth error that all sensors share. The linear model of the readings is also used to
+find sensor faults: slips, drifts and common steps.
 """
 
 from __future__ import annotations

@@ -31,7 +31,7 @@ class LineResponse:
     def depths(self, read: ReadCurrents, logs: Floats, forward: Forward | None = None) -> Floats:
         """Return the depths (n, p) of the points [m] in the currents `read`, multiplied by factors.
 
-        The factors are exp(`logs`) (n, k). `forward` is a mooring other than `self.forward`.
+        The factors are exp(`logs`) (n, k). If `forward` is given, it replaces `self.forward`.
         """
         factor = np.exp(logs)
         return (forward or self.forward).depths(read.level, read.u * factor, read.v * factor)

@@ -9,7 +9,7 @@ The unknowns at each time are
 The unknowns of the whole record are drag factors, a depth error common to all sensors (the datum),
 and sensor offsets. The datum and the positions of the sensors on the line may change in rare steps.
 Most priors are normal distributions. Student's t distributions are used for the errors of meters
-and sensors, for the datum and the sensor positions, and for their steps.
+and sensors, for the datum and the sensor positions, and for the steps of both.
 
 The method is a Kalman smoother with Gauss-Newton steps over the whole record. Expectation and
 maximisation (Dempster, Laird and Rubin 1977) estimate the meter error for each quality flag.

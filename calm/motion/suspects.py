@@ -86,7 +86,8 @@ def meter_remarks(measured: MooringMeasurements, names: Sequence[str]) -> list[s
     A meter is reported if it disagrees with its two nearest meters, and these two meters agree with
     each other. The measure of agreement is the complex correlation r of the currents at two meters
     (Kundu 1976, J. Phys. Oceanogr. 6, 238-242). The phase of r is the mean angle between the
-    currents. For n independent times, its standard deviation is sqrt((1 - r²) / (2 r² n)).
+    currents. For n independent times, this phase has the standard deviation
+    sqrt((1 - r²) / (2 r² n)).
     """
     flow = np.where(measured.flag <= GOOD, measured.u + 1j * measured.v, np.nan)
 

@@ -71,7 +71,7 @@ class Buoy:
         [degrees/m] and phase [degrees] of pitch
     follows : whether heave and pitch follow the motion of the water surface
     panels : (12, f) result of `panel_response`; None if formulas are used instead
-    profile : (s, 2) radii and heights of horizontal sections of the hull [m], from the keel up;
+    profile : (s, 2) radius and height of each horizontal section of the hull [m], from the keel up;
         None if pitch is not computed
     centre : height of the centre of mass, with the pieces on the float [m]
     bail : height of the attachment point of the line [m]
