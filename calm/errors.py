@@ -121,7 +121,7 @@ EXTRAS: dict[str, tuple[str, ...]] = {
 def how_to_install(missing: ModuleNotFoundError) -> str | None:
     """Return a message that names a missing library and the command that installs the library.
 
-    Return None for a missing module of CALM or without a name, which is a program error.
+    The result is None if the module is part of CALM or has no name. This is an error in CALM.
     """
     library = (missing.name or "").partition(".")[0]
     if library in ("", "calm"):
@@ -190,9 +190,9 @@ def not_among(name: str, text: str, allowed: Iterable[str], offer: str | None = 
 def nearest(text: str, known: Iterable[str]) -> str | None:
     """Return the name most similar to a text, or None if no name is similar.
 
-    Words and numbers count: for ``chain-g30-16``, ``chain-short-g30-16`` is nearer than
-    ``chain-g80-16``. If no name has similar letters, a name with every word of the text is similar:
-    ``ADCP`` gives ``ADCP 450 m``.
+    Equal words and numbers count: for ``chain-g30-16``, ``chain-short-g30-16`` is nearer than
+    ``chain-g80-16``. If the letters of no name are similar, a name is also similar if it contains
+    every word of the text: ``ADCP`` gives ``ADCP 450 m``.
     """
     given, names = text[:LONGEST_TEXT], list(known)
     wanted = _parts(given)

@@ -225,10 +225,10 @@ _shown: dict[str, str] = {}
 
 @cache
 def _layout(unit: str, display: str, decimals: int) -> tuple[str, float, int]:
-    """Return the display unit, the factor from the unit of results to the display unit, and the
-    decimals.
+    """Return the display unit of a quantity, the factor for conversion, and the number of decimals.
 
-    The number of decimals preserves the resolution of the usual unit.
+    The factor converts from the unit of results to the display unit. In the display unit, the
+    number of decimals gives about the same resolution as `decimals` in the usual unit.
     """
     dimension, usual = _CHOICES.get(unit, ""), _USUAL.get(display, 1.0)
     chosen = "" if display and dimension != "force" else _shown.get(dimension, "")

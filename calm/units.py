@@ -291,8 +291,9 @@ def unit_factor(text: str, dimension: str) -> float:
 def unit_line(text: str, wanted: str) -> tuple[float, float]:
     """Return the factor and offset that convert a value x to another unit: ``factor * x + offset``.
 
-    The units, such as ``"K"`` or ``"S m-1"``, include temperature scales; `wanted` is written as by
-    pint. Raises QuantityError if the unit is unknown or has another dimension than `wanted`.
+    `text` is the unit of x, such as ``"K"`` or ``"S m-1"``. `wanted` is the name of the other unit
+    in pint. Temperature scales are allowed. Raises QuantityError if the unit of x is unknown or has
+    another dimension than `wanted`.
     """
     registry = _registry()
     plain = text.rpartition(",")[2].strip()  # `ITS-90, deg C`

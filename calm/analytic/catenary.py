@@ -233,9 +233,10 @@ def _solve(x: float, z: float, compliance: float, seabed: bool) -> tuple[float, 
 def _miss(
     h: float, v: float, x: float, z: float, compliance: float, seabed: bool
 ) -> tuple[float, float, tuple[float, float, float]]:
-    """Return the position error of the upper end, and ∂x/∂H, ∂x/∂V = ∂z/∂H, ∂z/∂V.
+    """Return the errors of x and z at the upper end, and the derivatives of x and z.
 
-    The line has unit length and weight.
+    The three derivatives are ∂x/∂H, ∂x/∂V and ∂z/∂V; ∂z/∂H equals ∂x/∂V. The length and the weight
+    of the line are 1.
     """
     lifted = min(1.0, v) if seabed else 1.0
     bottom = v - lifted

@@ -122,7 +122,10 @@ def chart_solve(
 
 
 def _solve(k: float, known: dict[str, float], floats: bool) -> list[ChartSolution] | NoEquilibrium:
-    """Solve for sinking cables, with tensions divided by w."""
+    """Return all sinking cables with the given quantities, or the reason why there is none.
+
+    Tensions are divided by w. `floats` only selects the wording of the reason.
+    """
     refusal = contradiction(known)
     if refusal:
         return refusal
@@ -248,17 +251,20 @@ _LEAST_SLACK = 1e-12
 
 
 def family(what: str) -> NoEquilibrium:
-    """Return the answer ``one-parameter-family``, with the message `what`."""
+    """Return the answer that the given quantities do not determine the cable.
+
+    `what` is the message of this answer.
+    """
     return NoEquilibrium(
         "one-parameter-family", what, "Replace one of these quantities with another one."
     )
 
 
 def contradiction(known: Mapping[str, float]) -> NoEquilibrium | None:
-    """Find a contradiction between the quantities of a sinking cable that does not depend on K.
+    """Check the given quantities of a sinking cable for faults that do not depend on K.
 
-    The messages also suit the mirror image of a buoyant cable. The result is None if there is no
-    contradiction.
+    Quantities are faulty if they contradict each other or are not independent. The result is None
+    if there is no fault. The messages are also valid for a buoyant cable.
     """
     below, above = known.get("tension_a"), known.get("tension_b")
     height, distance = known.get("height", 0.0), known.get("distance", 0.0)
@@ -346,8 +352,8 @@ def straight(k: float, known: Mapping[str, float]) -> ChartSolution | NoEquilibr
     """Return the straight cable at the critical angle that has the given quantities.
 
     In `known`, angles are in rad and tensions are divided by w. The result is None if no straight
-    cable has these quantities to 1e-9. NoEquilibrium is returned, not raised, if they do not
-    determine the length or the tension.
+    cable has these quantities to 1e-9. If the quantities leave the length or the tension open, the
+    function returns NoEquilibrium instead of raising the exception.
     """
     angle = float(critical_angle(k))
     sine, cosine = math.sin(angle), 0.0 if k == 0.0 else math.cos(angle)

@@ -6,16 +6,16 @@ w > 0 [N/m], φ is the angle between cable and current, and s is the arc length 
     dT/ds = w sin φ,    T dφ/ds = w g(φ),    g(φ) = cos φ + K |sin φ| sin φ,    K = ρ Cx D V²/(2w)
 
 H₀ is T/w at the apex, φ = 0. In units of H₀ and wH₀, all cables with the same K are pieces of one
-curve with its origin at the apex. The curve has two branches, separated by the critical angle φ_c,
-where g = 0. The second branch has its apex at φ = 180° and is the mirror image of the first branch
-for −K.
+curve with its origin at the apex. The curve has two branches. They are separated by the critical
+angle φ_c, where g = 0. The second branch has its apex at φ = 180°. With −K in place of K, the
+formulas of the first branch give the mirror image of the second branch.
 
 With u = cos φ, u_c = cos φ_c and the parameter λ, the tension is
 
     T/(wH₀) = [(1 − u_c)(1 + u u_c)/((1 + u_c)(u − u_c))]^m = cosh^m λ,    m = (1 − u_c²)/(1 + u_c²)
 
-λ resolves the whole branch; for K = 0 it is the parameter of the catenary. Arc length and distance
-are quadratures in λ, accurate to rounding.
+The parameter λ covers the whole branch. For K = 0, λ is the parameter of the catenary. Arc length
+and distance are computed by quadrature over λ, accurate to rounding.
 
 Source: H. Braconnot, charts for cables in a uniform current; closed form derived here.
 """
@@ -60,8 +60,8 @@ def check_k(k: float) -> float:
 class Branch:
     """One branch of the curve, rotated so that it extends downstream and its apex is at ψ = 0.
 
-    A point is given by the parameter λ, negative before the apex. The first branch has ψ = φ. The
-    second branch has ψ = 180° − φ, and distances positive upstream.
+    The parameter λ gives a point on the branch; λ is negative before the apex. On the first branch,
+    ψ = φ. On the second branch, ψ = 180° − φ, and distances are positive upstream.
 
     Parameters
     ----------
@@ -172,9 +172,9 @@ class Branch:
         return total
 
     def _panel(self, limit: float, start: Floats, end: Floats) -> Floats:
-        """Return arc length and distance (2, …) between points at most one panel apart.
+        """Return arc length and distance (2, …) between two points within one panel.
 
-        Points far from the apex may be farther apart.
+        Far from the apex, the two points may be more than one panel apart.
         """
         width = end - start
         places = start + width * _NODES.reshape(-1, *([1] * start.ndim))
@@ -190,7 +190,10 @@ class Branch:
         return total
 
     def _rates(self, limit: Floats | float, parameter: Floats) -> tuple[Floats, Floats]:
-        """Return ds′/dλ and cos ψ on the side λ ≥ 0 on which the cosine approaches `limit`."""
+        """Return ds′/dλ and cos ψ on one side of the apex, for λ ≥ 0.
+
+        `limit` selects the side: it is the limit of cos ψ far from the apex on this side.
+        """
         sech = _sech(parameter)
         divisor = 1.0 + limit - limit * (1.0 - limit) * sech
         cosine = ((1.0 - limit) * sech + limit * (1.0 + limit)) / divisor
@@ -200,7 +203,10 @@ class Branch:
 
     @cached_property
     def _cumulative(self) -> dict[float, Floats]:
-        """Arc length and distance from the apex to the end of each panel, for each side."""
+        """Arc length and distance (panels + 1, 2) from the apex to each edge of the panels.
+
+        The keys are the limits of cos ψ on the two sides of the apex.
+        """
         edges: Floats = np.arange(_PANELS + 1) * np.float64(_PANEL)
         tables = {}
         for limit in (self.limit, -self.limit):

@@ -1,12 +1,12 @@
 """Search on a branch of the curve for all cables that match the given quantities.
 
 A cable is a piece of a branch, from λ_A to λ_B, scaled by H₀. The upper end is B, so λ_B > |λ_A|.
-If the cable dips below A, λ_A is negative. The ratio of two sizes (tensions divided by w, height,
-distance, length) does not depend on H₀. The number of unknowns is
+If the cable dips below A, λ_A is negative. A size is a tension divided by w, a height, a distance
+or a length. The ratio of two sizes does not depend on H₀. The number of unknown values of λ is
 
-- 0 if both angles, or one angle and the ratio of the tensions, are given;
-- 1 if one angle, or the ratio of the tensions, is given;
-- 2 if length, distance and a third size are given.
+- 0 if both angles are given, or one angle and the ratio of the tensions;
+- 1 if only one angle is given, or only the ratio of the tensions;
+- 2 if the given quantities are the length, the distance and another size.
 """
 
 from collections.abc import Callable, Mapping
@@ -21,8 +21,8 @@ Piece = tuple[float, float]
 Path = Callable[[Floats], tuple[Floats, Floats]]
 
 _FINEST = 1e-10
-"""Smallest step of a grid, as a fraction of its range; shorter parts of the curve are straight
-within rounding.
+"""Smallest step of a search grid, as a fraction of the range of the grid. Shorter parts of the
+curve are straight within rounding.
 """
 
 _POINTS = 240
@@ -74,7 +74,10 @@ class ChartSearch:
         return self._along(places, lambda place: (place, self._raised(place, ratio)))
 
     def log_ratio(self) -> float | None:
-        """Return ln(T_B/T_A), or None unless two of T_A, T_B and H are given."""
+        """Return ln(T_B/T_A) from two of the sizes tension_a, tension_b and height.
+
+        The result is None if fewer than two of these sizes are given.
+        """
         below, above, height = (self.sizes.get(name) for name in _TENSION_NAMES)
         if height is not None and below is not None:
             return float(np.log1p(height / below))
@@ -89,7 +92,11 @@ class ChartSearch:
         return inverse_log_cosh(log_cosh(start) + ratio / self.branch.exponent)
 
     def _residual(self, path: Path, places: Floats) -> Floats:
-        """Return a residual from −1 to 1, which is zero if two sizes have the required ratio."""
+        """Return the error in the ratio of two sizes, from −1 to 1, at points of a search path.
+
+        `path` converts the parameters `places` of the search to λ_A and λ_B. The error is zero for
+        a piece with the given ratio.
+        """
         start, end = path(places)
         # with three sizes, the path satisfies the ratio of the tensions; one of the two sizes that
         # give this ratio is then compared with the third size
@@ -243,7 +250,11 @@ class LengthSearch:
         return [piece for piece in found if piece is not None]
 
     def _polished(self, start: float, end: float) -> Piece | None:
-        """Find the root that Powell's method reaches from a starting point, or None."""
+        """Return the piece with both ratios that Powell's method finds from a starting point.
+
+        `start` and `end` are the values of λ at the ends of the initial piece. The result is None
+        if the method does not converge.
+        """
         from scipy.optimize import root
 
         least, farthest = abs(start) * _LEAST_RISE, 3.0 * reach(self.branch)

@@ -188,7 +188,10 @@ class Hodograph:
         return integrated(part, self._panels(start, step), floor)
 
     def _panels(self, start: float, step: float) -> list[float]:
-        """Divide a step of m into panels for quadrature, with one edge at the kink of friction."""
+        """Return the edges of the panels for quadrature over a step of m, relative to `start`.
+
+        If friction has a kink within the step, one edge is at the kink.
+        """
         low, high = sorted((start, start + step))
         # the line turns within the first few parts, which quadrature over a long step would miss
         edge, cuts = self._upright or self._a, []
@@ -250,17 +253,18 @@ def integrated(part: Callable[[float], float], edges: Sequence[float], floor: fl
 
 
 class Station(NamedTuple):
-    """Points on a line in a stream, relative to the given end of the line.
+    """Points on a line in a stream. Positions are relative to the end where the tension is given.
 
-    The angle is below 90° for a cable above a towed body, and above 90° (90° + tilt) for a mooring
-    line. At a body of weight W in water and drag D, the tension is √(W² + D²) and the angle
-    atan2(W, D). At a float of buoyancy B, the angle is atan2(B, −D).
+    The angle of a cable above a towed body is below 90°. The angle of a mooring line is above 90°:
+    90° + tilt. A towed body with the weight W in water and the drag D gives its end of the cable
+    the tension √(W² + D²) and the angle atan2(W, D). A float with the buoyancy B and the drag D
+    gives the same tension with B in place of W, and the angle atan2(B, −D).
 
     Attributes
     ----------
     angle : angle between the upward direction of the line and the upstream direction [rad]
     tension : tension [N]
-    x, z : distance upstream of the given end, and height above this end [m]
+    x, z : distance upstream of this end, and height above this end [m]
     """
 
     angle: Floats

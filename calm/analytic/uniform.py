@@ -241,9 +241,9 @@ def cable_functions(angle: ArrayLike, weight_ratio: float, friction: float = 0.0
 
     Parameters
     ----------
-    angle : φ [rad], from above the critical angle up to π. Below 90°, the line is towed with its
-        body at 90°. Above 90°, the line is moored: arc lengths are negative, and the tangential
-        drag and the term f σ change sign
+    angle : φ [rad], above the critical angle and at most π. Angles below 90° are for a towed line;
+        the body is at the point where φ = 90°. Angles above 90° are for a mooring line: arc lengths
+        are negative, and the tangential drag and the term f σ change sign
     weight_ratio : p = w/R > 0 [-]
     friction : f = F/R ≥ 0 [-]
 

@@ -7,8 +7,8 @@ end. Drag per metre is k_n (V sin α)^D normal to the cable and k_t (V cos α)^D
     dT/ds = P = μg sin α + k_t (V cos α)^D,      T dα/ds = δ = μg cos α − k_n (V sin α)^D.
 
 The drag parameters of the functions are k_n V^D and k_t V^D, in N/m. At the angle α_d, where δ = 0,
-the cable is straight. Without a body, the cable is straight at this angle from its free end.
-Otherwise, with the radius of curvature ρ = T/δ,
+the cable is straight. A cable without a body has a free end and is straight at this angle. For a
+curved cable with the radius of curvature ρ = T/δ,
 
     dT/T = (P/δ) dα,      dρ/ρ = (P − dδ/dα)/δ dα.
 

@@ -183,8 +183,9 @@ def stopped_by_a_signal(
 ) -> Iterator[Callable[[Progress], None]]:
     """Convert SIGINT and SIGTERM to KeyboardInterrupt while a batch runs.
 
-    A stop request of a queueing system then leaves no temporary files. The batch must use the
-    returned `progress`, which also raises KeyboardInterrupt after a signal.
+    If a queueing system stops the batch, no temporary files are left. The context yields a
+    replacement for `progress`, and the batch must call this replacement. The replacement also
+    raises KeyboardInterrupt after a signal.
     """
     if current_thread() is not main_thread():
         yield progress

@@ -25,8 +25,8 @@ class Drawing(NamedTuple):
 
     Attributes
     ----------
-    alone : whether the report has all pages of one mooring, or one page per mooring
-    full : whether each of several moorings also has a PDF with all pages
+    alone : true for a report with all pages of a single mooring, false for one page per mooring
+    full : whether each of several moorings also gets a separate PDF with all its pages
     """
 
     alone: bool = True
@@ -84,8 +84,9 @@ def judge(
 ) -> list[CheckedMooring]:
     """Check designs against the design rules.
 
-    Accepted findings must be valid on the day of the report. With many moorings, each process
-    checks whole moorings; with few, the processes share the environments of a mooring.
+    A finding counts as accepted only if its acceptance is valid on the day of the report. With many
+    moorings, each process checks whole moorings. With few moorings, the processes share the
+    environments of a mooring.
 
     Parameters
     ----------
@@ -148,10 +149,10 @@ def _concluded(
     draws: tuple[int, int] | None,
     shared: uncertain.Mapped,
 ) -> CheckedMooring:
-    """Assess a mooring that is solved in its environments, and draw section `number` of the report.
+    """Assess a mooring from its solutions in all environments, and draw its report section.
 
-    `draws` are the number of samples and the seed. `shared` distributes blocks of samples over
-    processes.
+    `cases` are these solutions, and `number` is the number of the section. `draws` are the number
+    of samples and the seed. `shared` distributes blocks of samples over processes.
     """
     from calm.checks import assess, design_check
 

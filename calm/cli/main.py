@@ -49,8 +49,8 @@ Exit codes: 0 done, 1 a check found something, 2 bad input or usage,
 3 no equilibrium, 70 internal error, 130 interrupted."""
 
 _GC_THRESHOLD = 100_000
-"""Number of new objects between collections of reference cycles. Python's default of 700 costs a
-command a tenth of its time, because all imported objects are scanned repeatedly.
+"""Number of new objects after which Python collects reference cycles. With Python's default of 700,
+the repeated scan of all imported objects takes a tenth of the time of a command.
 """
 
 

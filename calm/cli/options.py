@@ -94,8 +94,9 @@ def show_units(given: str | None, files: Iterable[MooringFile] = ()) -> None:
 def quantities(**given: tuple[str | None, str]) -> dict[str, float]:
     """Convert quantities given as options to SI units and degrees.
 
-    Each parameter is the text of the option (None if absent) and its dimension. Raises UsageError
-    with all invalid texts.
+    Each keyword gives the text of one option and the dimension of its quantity. The text is None if
+    the option is absent. The result has the values by keyword. Raises UsageError; its message lists
+    all invalid texts.
     """
     from calm.units import QuantityError, parse_quantity
 
@@ -124,8 +125,8 @@ def from_one(**given: int | None) -> None:
 def span_of(option: str, text: str, between: tuple[float, float], in_words: str) -> np.timedelta64:
     """Parse a duration given as an option, such as ``2 h``.
 
-    The allowed range is `between` [s], which the message states as `in_words`. Raises UsageError if
-    the text is not a duration in this range.
+    `between` is the allowed range [s], and `in_words` is the text for this range in the message.
+    Raises UsageError if the text is not a duration in this range.
     """
     import numpy as np
 

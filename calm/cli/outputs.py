@@ -144,7 +144,7 @@ class ExitCode(IntEnum):
     """A file, an option or an output path is unusable; no result was computed."""
 
     NO_EQUILIBRIUM = 3
-    """A mooring has no equilibrium that may be shown."""
+    """A mooring has no valid equilibrium."""
 
     INTERNAL_ERROR = 70
     """CALM itself failed: a bug, worth a report."""
@@ -272,8 +272,8 @@ class Outputs:
     def write(self, shown: Sequence[Shown], to_csv: Callable[[], str]) -> None:
         """Write the output files, then print the tables, or JSON if requested on standard output.
 
-        `shown` has one entry per input file, in order. Raises UsageError if a file cannot be
-        written.
+        `shown` has one entry per input file, in order. `to_csv` returns the content of a CSV file
+        for all inputs together. Raises UsageError if a file cannot be written.
         """
         from calm.report.result_files import to_json
 

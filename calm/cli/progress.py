@@ -34,9 +34,10 @@ _FIRST_LINE, _NEXT_LINES = 10.0, 60.0  # seconds without a terminal
 
 
 class ProgressTeller:
-    """Progress display in one line of the terminal; a call with a `Progress` updates the display.
+    """Progress display in one line of the terminal. Call the object with a `Progress` to update it.
 
-    The display appears after `patience` [s] or, without `patience`, soon after the first call.
+    If `patience` is given, the display appears after `patience` seconds. Otherwise, the display
+    appears soon after the first call.
     """
 
     def __init__(self, patience: float | None = None) -> None:
@@ -55,7 +56,10 @@ class ProgressTeller:
         self.tell(lambda seconds: head + state(progress, seconds))
 
     def tell(self, text: Callable[[float], str]) -> None:
-        """Write the text for the elapsed time [s], unless the last update is too recent."""
+        """Update the display, unless the last update is too recent.
+
+        `text` converts the elapsed time [s] to the text of the display.
+        """
         now = monotonic()
         if self._started is None:
             self._started = now

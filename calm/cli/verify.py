@@ -71,8 +71,9 @@ def _chosen_sources(words: Sequence[str]) -> list[Source]:
 
 WITHHELD = tuple(f"Aquadopp {height}" for height in (526, 426, 326, 226, 126))
 MEAN_RATIO, MAX_RATIO, IN_BAND = 0.55, 0.75, (0.88, 0.99)
-"""Limits for the ratio of the rms error to the rms error of interpolation (mean and maximum over
-the sensors), and for the fraction of values within their 95 % bands (smallest and largest).
+"""Limits of the field verification. The ratio compares the rms error of CALM with the rms error of
+interpolation. `MEAN_RATIO` and `MAX_RATIO` limit the mean and the maximum of this ratio over the
+sensors. `IN_BAND` is the allowed range of the fraction of values within their 95 % bands.
 """
 
 

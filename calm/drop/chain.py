@@ -1,8 +1,9 @@
 """A line as a chain of straight bars between nodes, and the loads on the bars.
 
-A cable or chain is divided into bars. A rigid piece is one bar; all pieces rigidly connected to the
-free end share one bar. A load is a piece, the part of a piece on one bar, or a clamp. Its force is
-distributed to the two nodes of the bar by the lever rule.
+A cable or chain is divided into bars. A rigid piece is one bar. At the free end, the first buoyant
+piece and the rigid pieces above it share one bar. A bar carries loads: rigid pieces, clamps, or a
+part of a cable or chain. The force of a load is distributed to the two nodes of its bar by the
+lever rule.
 """
 
 from dataclasses import dataclass
@@ -17,11 +18,13 @@ from calm.physics.reynolds import DragCurve
 from calm.physics.track import head_count
 
 MIN_BAR_SHARE = 0.12
-"""Smallest fraction of all bars for each cable or chain that is not short, since any such cable or
-chain may come to lie on the seabed.
+"""Smallest fraction of all bars that a cable or chain gets, unless it is short. Enough bars are
+needed because any cable or chain may come to lie on the seabed.
 """
 SHORT_SHARE = 0.02
-"""Fraction of the total length of cables and chains above which a cable or chain is not short."""
+"""A cable or chain is short if its share of the total length of cables and chains is at most this
+fraction.
+"""
 
 
 @dataclass(frozen=True)
@@ -38,11 +41,12 @@ class Elements:
     normal_drag, tangential_drag : total Kn and Kt [N/(m/s)²]
     directional : whether the drag depends on the direction of the flow; if not, the drag is Kn|V|V
     flexible : whether the load belongs to a cable or chain
-    thinning, lift : as in `Line`
+    thinning : exponent of 1 + strain in the drag of a cable or chain, as in `Line`
+    lift : hydrodynamic lift at 1 m/s, positive up [N/(m/s)²]
     push : (3, k) force of the wind [N]
-    height : length of a rigid load [m]
-    out : whether the load is mounted above the float
-    curve : drag curves of smooth spheres and cylinders; None for other loads
+    height : length of a rigid load [m]; 0 for other loads
+    out : whether the load belongs to the pieces above the uppermost float
+    curve : drag curve of each smooth sphere or cylinder; None for other loads
     """
 
     bar: Integers
@@ -77,7 +81,7 @@ class Elements:
         return np.stack([1.0 - self.place, self.place])
 
     def summed(self, per_load: Floats) -> Floats:
-        """Return the sums (..., n) over the loads on each bar, from values (..., k) per load."""
+        """Sum the values (..., k) of the loads over each bar, and return the sums (..., n)."""
         total: Floats = np.add.reduceat(per_load, self._first, axis=-1)
         return total
 
@@ -88,7 +92,7 @@ class Elements:
 
 @dataclass(frozen=True)
 class FloatOnChain:
-    """Properties of the uppermost float at the surface, tabulated against its draft.
+    """Properties of the uppermost float, afloat at the surface, tabulated against its draft.
 
     Attributes
     ----------
@@ -119,9 +123,12 @@ class BarChain:
     length : (n,) unstretched length of the bars [m]
     piece : (n,) index of the piece that each bar represents; of several rigid pieces, the last
     compliance : (n,) strain per unit tension, 1/EA [1/N]
-    elongation : bars, and knots of the elongation curve, of every cable with such a curve
-    bars : (p, 2) first bar of every piece, and the bar after its last bar; equal without length
-    span : (p, 2) positions of each piece's upper end on its first bar and lower end on its last bar
+    elongation : for every cable with an elongation curve, indices of its bars, and knots of the
+        curve
+    bars : (p, 2) first bar of every piece, and the bar after its last bar; for a piece without
+        length, both are the adjacent bar
+    span : (p, 2) position of each piece's upper end on its first bar, and of its lower end on its
+        last bar
     clamp_bar, clamp_place : (m,) bar of each clamp, and position on this bar
     afloat : properties of the uppermost float at the surface; None if its hull is unknown
     """
@@ -212,7 +219,11 @@ def _bars(line: Line, count: int) -> tuple[Floats, Integers, Integers, Floats]:
 
 
 def _along(piece: Integers, share: Floats, bars: Integers, span: Floats) -> tuple[Integers, Floats]:
-    """Find the bars, and the positions on them, of points at given fractions of their pieces."""
+    """Locate points on bars: return the bar of each point, and the position on this bar.
+
+    `piece` is the piece of each point. `share` is the distance of the point from the upper end of
+    this piece, divided by the length of the piece.
+    """
     first, end = bars[piece].T
     begin, stop = span[piece].T
     fraction = begin + share * (stop - begin)

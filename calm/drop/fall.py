@@ -18,13 +18,17 @@ SKIN, THICKEST_SKIN = 5e-4, 0.3
 and upper limit of this thickness [m].
 """
 AT_REST = 1e-7
-"""Motion per time step, as a fraction of the depth, below which the line is at rest."""
+"""The line is at rest if no node moves by more than this fraction of the water depth in the last
+time step.
+"""
 UNMOVED = 1e-10
-"""Motion per time step, as a fraction of the depth, below which the motion is due to rounding. The
-longest time step then follows.
+"""If no node moves by more than this fraction of the water depth in a time step, the motion is due
+to rounding, and the longest time step is next.
 """
 MAX_STEP = 1e6
-"""Length of the longest time step [s], after which a line is at rest."""
+"""Limit of the time step [s]. A settling line is tested for rest when its growing time step reaches
+this limit.
+"""
 SLOWEST_FLOW = 0.01
 """Lowest flow speed that is tried to shorten the distance over which a line streams [m/s]."""
 STREAMED_WITHIN = 1e-4
@@ -33,8 +37,8 @@ LEAST_COMPRESSION = 1e-4
 """Compression above which a settled bar is laid down, as a fraction of the sum of all weights."""
 _FALLS = 3
 RELEASED_SHARE = 0.6
-"""Fraction of the anchor's weight that the ship still carries in the second step, and factor on
-this fraction for each further step. This gradual release avoids a jerk.
+"""Fraction of the anchor's weight that the ship still carries in the second time step. In each
+further step, the carried weight is multiplied by this fraction. This gradual release avoids a jerk.
 """
 _GROWTH = 1.3
 _REST_GROWTH = 1.6
@@ -153,7 +157,7 @@ def fall(
 
 
 def nothing_limits() -> NoEquilibrium:
-    """Return the exception to raise for a fall without drag, in which the speed has no limit."""
+    """Return the exception for a line and an anchor without drag, whose speed has no limit."""
     return Status.NO_EQUILIBRIUM.because(
         "The speed of the line is unlimited, since neither the line nor its anchor has drag.",
         advice="Set the drag of its pieces, or `kt` of the anchor.",
@@ -249,7 +253,10 @@ def _streamed(state: ChainState) -> float:
 
 
 def _slowed(mover: Mover, state: ChainState, streamed: float) -> ChainState:
-    """Find a slower flow in which the line streams the required distance [m] behind the ship."""
+    """Reduce the flow until the line streams over the distance `streamed` [m] behind the ship.
+
+    Return the state of the line in this slower flow.
+    """
     sea = mover.sea
     reach = float(mover.chain.length.sum())
     current = sea.water.current_at(np.zeros(()))
@@ -284,7 +291,10 @@ def _slowed(mover: Mover, state: ChainState, streamed: float) -> ChainState:
 
 
 def _drawn(mover: Mover, state: ChainState, streamed: float) -> ChainState:
-    """Move the free end to a distance [m] from the lower end, and let the line settle."""
+    """Pull the free end to a horizontal distance [m] from the lower end, and let the line settle.
+
+    Return the settled state. `streamed` is the distance.
+    """
     end = state.node[0, :2]
     here = float(np.linalg.norm(end))
     for share in np.linspace(0.0, 1.0, 21)[1:]:

@@ -25,11 +25,11 @@ class DepthReached:
 
     Attributes
     ----------
-    rest, greatest : depth of the upper end at rest, and its largest depth [m]
+    rest, greatest : depth of the upper end at rest, and largest depth of the upper end [m]
     time : time from the release of the anchor to the largest depth [s]; None if the depth exceeds
         the depth at rest by no more than `OVERSHOOT`
     rating : depth rating [m]; None if unknown
-    beyond : whether the deeper end goes below the depth rating
+    beyond : whether the upper or the lower end goes below the depth rating
     """
 
     part: Piece | Clamp
@@ -77,8 +77,8 @@ class FallPath:
     time : time since the release [s]
     anchor_depth, float_depth : depths of the lower end of the anchor and of the free end [m]
     anchor_speed : downward speed of the anchor [m/s]
-    anchor_x, float_x : horizontal distances of the anchor and the free end from the release,
-        positive towards the float [m]
+    anchor_x, float_x : horizontal distances of the anchor and of the free end from the position of
+        the anchor at its release, positive towards the float [m]
     anchor_tension : tension of the line at the anchor [N]
     """
 
@@ -112,8 +112,8 @@ def piece_ends(chain: BarChain, state: ChainState) -> tuple[Floats, Floats]:
 def end_tensions(mover: Mover, state: ChainState, *, within: bool = False) -> Floats:
     """Return the tensions (n, 2) at the upper and the lower end of every bar [N].
 
-    A bar under compression has zero tension. If `within` is true, loads exactly at the ends of a
-    bar are excluded.
+    A bar under compression has zero tension. If `within` is true, the tensions do not include loads
+    exactly at the ends of a bar.
     """
     on = mover.chain.elements
     strain, _ = mover.strain(state.tension)
@@ -189,9 +189,9 @@ def depths_of(pieces: Sequence[Piece], drop: Motion, rest: Motion) -> tuple[Dept
 
 
 def _depths(chain: BarChain, state: ChainState) -> tuple[Floats, Floats]:
-    """Return the depths [m] of the upper ends and of the deeper ends of pieces and clamps.
+    """Return the depths [m] of the upper ends, and the depths of the deeper ends.
 
-    The pieces come first.
+    Each array has the pieces, followed by the clamps. Both depths of a clamp are equal.
     """
     upper, lower = (-end[:, 2] for end in piece_ends(chain, state))
     clamps = -place_of(state, chain.clamp_bar, chain.clamp_place)[:, 2]
@@ -211,8 +211,8 @@ def pulls_of(pieces: Sequence[Piece], drop: Motion) -> tuple[Pull, ...]:
 def piece_tensions(drop: Motion) -> tuple[Floats, Floats]:
     """Return the tensions at the ends of all pieces (t-1, p, 2), and their maximum per piece [N].
 
-    The state under tow, the first of t states, is omitted. Rigid pieces that form one bar all have
-    the tensions at the ends of that bar.
+    The first of the t states is under tow, and is omitted. Rigid pieces that share one bar all have
+    the tensions at the ends of this bar.
     """
     # the flow past the line under tow differs from the flow after the release
     tension = np.array([end_tensions(drop.mover, one, within=True) for one in drop.states[1:]])

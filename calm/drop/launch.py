@@ -38,17 +38,19 @@ class Launch:
     Attributes
     ----------
     fall_speed : touchdown speed of the anchor [m/s], positive down
-    fall_speed_band : touchdown speeds [m/s] for twice and for half the anchor drag and tangential
-        drag of the line in the last time step; NaN without solution
+    fall_speed_band : touchdown speeds [m/s] for twice and for half the drag; the drag of the anchor
+        and the tangential drag of the line are changed only in the last time step. A speed is NaN
+        if this step has no solution
     anchor_tension : maximum load of the line on the anchor [N]
     drift : velocity of the anchor to the east and to the north at touchdown [m/s]
     tension_top, tension_bottom : (n,) maximum tension at the ends of every piece above the anchor
         [N]
     anchor_drag_known : False if the anchor drag is assumed to be that of a cube
     greatest_speed, greatest_tension : upper limits of the touchdown speed [m/s] and of the tension
-        (n,) in every piece [N]; if the anchor drag is unknown, with a last time step without this
-        drag
-    tangles : indices of pieces overtaken by the line above, and upside down at touchdown
+        (n,) in every piece [N]. If the anchor drag is unknown, the limits also cover a last time
+        step without anchor drag
+    tangles : indices of the pieces that form loops at touchdown, because the line above has
+        overtaken them
     """
 
     fall_speed: float
@@ -169,7 +171,10 @@ def ship_of(leg: Leg, speed: float, course: float, streamed: float | None = None
 
 
 def _at_last(drop: Motion, fineness: Fineness, along: float, of_anchor: float) -> Motion:
-    """Repeat the last time step with factors on the tangential drag and on the anchor drag."""
+    """Repeat the end of the fall in one time step, with changed drag.
+
+    `along` multiplies the tangential drag of the line, and `of_anchor` the drag of the anchor.
+    """
     landed, falling = drop.states[-1], drop.mover
     # the step ends at the touchdown and may be very short
     least = 0.5 * falling.sea.water.depth / fineness.steps

@@ -31,7 +31,10 @@ class WaterColumn:
 
     @cached_property
     def _rows(self) -> tuple[Floats, Floats]:
-        """u, v, w and density (4, levels) at every level, and their increase per metre below it."""
+        """u, v, w and density (4, levels) at the levels, and their increase per metre of depth.
+
+        The increases (4, levels + 1) are for the layers above, between and below the levels.
+        """
         water = self.water
         values = np.stack([water.u, water.v, water.w, water.density])
         slopes = np.zeros((4, values.shape[1] + 1))
@@ -59,9 +62,11 @@ class Loads:
     Attributes
     ----------
     force : (3, k) force [N]
-    by_flow : (3, 3, k) derivative by the flow past the load [N/(m/s)]
-    by_axis : (3, 3, k) derivative by the unit axis of the bar, for changes normal to the axis [N]
-    by_height : (3, k) derivative by height, with the shear of the current [N/m]
+    by_flow : (3, 3, k) derivative of the force by the flow past the load [N/(m/s)]
+    by_axis : (3, 3, k) derivative of the force by the unit axis of the bar [N]; valid for a change
+        of the axis normal to itself
+    by_height : (3, k) derivative of the force by the height of the load, which includes the effect
+        of the current shear [N/m]
     """
 
     force: Floats
@@ -147,9 +152,12 @@ def _friction(
 
     Returns
     -------
-    Drag along the axis; derivative of this drag by the tangential flow; derivative of this drag by
-    the speed, divided by the speed; for Hoerner's law, drag parallel to the flow, divided by the
-    speed. None means zero.
+    Four arrays (k,), where None stands for zero:
+
+    - drag along the axis;
+    - derivative of this drag by the tangential flow;
+    - derivative of this drag by the speed, divided by the speed;
+    - for Hoerner's law, drag in the direction of the flow, divided by the speed.
     """
     law = chain.line.friction
     straight = kt * np.sqrt(along**2 + slowest**2)

@@ -1,8 +1,9 @@
 """One time step of a chain without inertia: positions of its nodes at the end of the step.
 
-The forces on every node cancel at the end of the step, with drag for the mean velocity
-(X - Xₙ)/Δt over the step (implicit Euler). Positions and tensions are found together by Newton's
-method, so bars may be stiff or inextensible.
+The method is implicit Euler. The forces on every node cancel at the end of the step. Drag is
+computed for the mean velocity over the step, (X - Xₙ)/Δt, from the positions Xₙ at the start and X
+at the end of the step. Newton's method finds positions and tensions together, so bars may be stiff
+or inextensible.
 """
 
 from dataclasses import dataclass
@@ -24,9 +25,9 @@ LINEAR_DRAG_SPEED = 10.0
 rest [m/s].
 """
 CHANGE = 1e-5
-"""Tolerance of the last change: for a position, as a fraction of the line length; for a tension, as
-a fraction of the sum of all weights. The remaining error is of the order of the square of this
-tolerance.
+"""Newton's method stops after changes smaller than this: for a position, as a fraction of the line
+length; for a tension, as a fraction of the sum of all weights. The remaining error is of the order
+of the square of the last change.
 """
 BEARING_DEPTH = 1e-4
 """Penetration of the seabed at which the seabed carries a node, as a fraction of the water
@@ -245,7 +246,10 @@ class Mover:
         step: float,
         slowest: float,
     ) -> Floats:
-        """Compute the Newton correction (n+1, 4) of nodes and tensions; the last one is unused."""
+        """Return the Newton correction (n+1, 4): three coordinates of each node, and a tension.
+
+        The tension in a row is that of the bar below the node. In the last row, it is unused.
+        """
         chain, on = self.chain, self.chain.elements
         node = np.ascontiguousarray(node.T)
         velocity = (node - before.T) / step
@@ -314,14 +318,15 @@ def _solved(
 ) -> Floats:
     """Solve the linear system for the correction (n+1, 4) of nodes and tensions.
 
-    The last tension is 0.
+    A row has three coordinates of a node, and the tension of the bar below this node. The last
+    node has no bar below it, and the tension in its row is 0.
 
     Parameters
     ----------
-    residual : (4, n+1) residual forces on the nodes and residual lengths of the bars
-    diagonal : (3, 3, n+1) derivative of the force on a node by its own position
-    beside : two arrays (3, 3, n), derivatives by the position of the node below, and of the node
-        above
+    residual : (4, n+1) residual force on each node, and residual length of the bar below it
+    diagonal : (3, 3, n+1) derivative of the force on each node by the position of this node
+    beside : two arrays (3, 3, n): derivative of the force on the upper node of each bar by the
+        position of the lower node, and of the force on the lower node by the position of the upper
     axis : (3, n) axes of the bars, downward
     slack : (n,) derivative of a bar's length by its tension, negative
     fixed : indices of unknowns whose correction is 0

@@ -58,11 +58,12 @@ class DropPlan:
     ----------
     streamed, astern : horizontal distance and direction from the anchor to the free end at the
         release
-    fall_back, aside : horizontal distances from the release to the touchdown: towards the float,
-        and to the right of this direction
-    time_error, distance_error : estimated numerical errors of `fall_time`, and of `fall_back` and
-        `aside`
-    fall_time_band, fall_back_band : smallest and largest value for half to twice the anchor drag
+    fall_back, aside : horizontal distances from the release to the touchdown: `fall_back` towards
+        the float, and `aside` to the right of this direction
+    time_error : estimated numerical error of `fall_time`
+    distance_error : estimated numerical error of `fall_back` and `aside`
+    fall_time_band, fall_back_band : smallest and largest value if the anchor drag is between half
+        and twice its value
     tow_past : distance of the release past the target, along the course
     let_go : position of the release
     deck_time : time to handle a piece on deck, by the role of the piece
@@ -197,7 +198,9 @@ equilibrium.
 DRAG_BAND = 2.0
 """Uncertainty factor on the drag of the anchor."""
 ERROR_SAFETY = 2.0
-"""Safety factor of the error estimates, applied to the changes for doubled steps and bars."""
+"""Safety factor of the error estimates. An estimate is the change in a result if time steps and
+bars are twice as long, multiplied by this factor.
+"""
 LEAST_TIME_ERROR = 5e-4
 """Smallest relative error of the fall time, in case the estimated error is small by chance."""
 

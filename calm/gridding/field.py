@@ -3,9 +3,9 @@
 The field is a mean profile plus an anomaly. The correlation of the anomaly is a Matérn function of
 order 3/2 along depth, and an exponential function in time. A share of the variance is uncorrelated.
 
-A depth error of an instrument causes an error in its values: depth error times gradient. All
-instruments may share this error, so the standard deviation of the result includes it in full. Half
-of its variance is also independent noise of each instrument.
+A depth error of an instrument causes an error in its values: depth error times gradient. Such
+errors may be the same for all instruments, so the standard deviation of the result includes them in
+full. In addition, half of their variance is treated as independent noise of each instrument.
 
 Source: Rasmussen and Williams, Gaussian Processes for Machine Learning, 2006, eq. 4.17 and 4.18
 (correlation), eq. 2.25 and 2.26 (mean and variance).
@@ -75,7 +75,10 @@ class GriddedQuantity:
 
 
 class LevelPosterior(NamedTuple):
-    """Posterior mean and standard deviation, and the share of the prior variance that is left."""
+    """Posterior of a quantity at levels: mean, standard deviation and remaining variance.
+
+    `left` is the remaining variance as a share of the prior variance.
+    """
 
     mean: Floats
     deviation: Floats
@@ -136,9 +139,10 @@ def spacing(samples: Samples) -> float:
 
 
 def _local_line(weight: Floats, off: Floats, value: Floats, width: float) -> tuple[Floats, Floats]:
-    """Fit weighted lines over the last axis, and return their values and slopes at 0.
+    """Fit straight lines to `value` against `off`, and return their values at 0 and their slopes.
 
-    The slope is 0 if the depths are too close to each other.
+    The last axis has the points of each line. `off` are distances in depth, and `weight` are the
+    weights of the points. If the depths are too close relative to `width`, the slope is 0.
     """
     total = np.maximum(weight.sum(axis=-1), 1e-300)
     centre = (weight * off).sum(axis=-1) / total
@@ -150,7 +154,7 @@ def _local_line(weight: Floats, off: Floats, value: Floats, width: float) -> tup
 
 
 class _Block(NamedTuple):
-    """Observations (n, m) around each of n times: at this time and at the neighbouring times."""
+    """For each of n times, the m observations at this time and at the neighbouring times."""
 
     depth: Floats
     anomaly: Floats
@@ -190,7 +194,10 @@ def _block(field: GriddedQuantity, times: NDArray[np.int64]) -> _Block:
 
 
 def _slopes(samples: Samples, times: NDArray[np.int64], at: Floats) -> tuple[Floats, Floats]:
-    """Estimate vertical gradients, and depth errors [m], at depths (n, k) from nearby sensors."""
+    """Estimate vertical gradients and depth errors [m] at given depths, from nearby sensors.
+
+    The depths `at` and both results are (n, k), for the n time indices `times`.
+    """
     depth, value, error = (
         table[times][:, None, :] for table in (samples.depth, samples.value, samples.deviation)
     )
@@ -206,9 +213,10 @@ def _slopes(samples: Samples, times: NDArray[np.int64], at: Floats) -> tuple[Flo
 
 
 def _correlation(a: Floats, b: Floats, s: Floats, t: Floats, scales: Scales) -> Floats:
-    """Return correlations (n, i, j) of depths a at times s (n, i) with depths b at times t (n, j).
+    """Return the correlations (n, i, j) between two sets of points in depth and time.
 
-    The correlations are multiplied by the correlated share of the variance.
+    The first set has depths a and times s, each (n, i). The second set has depths b and times t,
+    each (n, j). The correlations are multiplied by the correlated share of the variance.
     """
     far = 3.0**0.5 / scales.depth * np.abs(a[:, :, None] - b[:, None, :])
     apart = np.abs(s[:, :, None] - t[:, None, :]) / scales.time
@@ -256,8 +264,9 @@ def estimate(field: GriddedQuantity, levels: Floats, times: NDArray[np.int64]) -
 def _likeliest(field: GriddedQuantity, times: NDArray[np.int64]) -> Scales:
     """Find the most likely correlation scales, from the samples at the given time indices.
 
-    A weak prior has the medians: a quarter of the line, six time steps, and 2 % uncorrelated
-    variance. The prior standard deviation is a factor of five for each scale.
+    The scales have a weak prior. Its medians are a quarter of the depth range of the samples, six
+    time steps, and 2 % uncorrelated variance. Its standard deviation is a factor of five for each
+    scale.
     """
     from scipy.optimize import minimize
 
@@ -291,9 +300,9 @@ def _likeliest(field: GriddedQuantity, times: NDArray[np.int64]) -> Scales:
 def left_out(field: GriddedQuantity, times: NDArray[np.int64]) -> tuple[Floats, Floats]:
     """Predict each sensor's values from the other sensors, at the n time indices `times`.
 
-    Return measured minus predicted values (n, s), and their standard deviations. Both are NaN
-    without a value, or without another sensor. The sensor's own values at neighbouring times are
-    withheld.
+    Return measured minus predicted values (n, s) for s sensors, and their standard deviations. Both
+    results are NaN if the sensor has no value at the time, or if no other sensor has a value. The
+    values of the predicted sensor at neighbouring times are withheld, too.
 
     Source: Rasmussen and Williams, eq. 5.12, extended to blocks.
     """
@@ -319,7 +328,11 @@ MIN_RESIDUALS = 20  # minimum number of residuals from which a factor is estimat
 
 
 def _beyond(field: GriddedQuantity, times: NDArray[np.int64]) -> float:
-    """Return the factor on bands beyond the outermost sensors so that they cover 95 % of values."""
+    """Return the factor that widens the 95 % bands beyond the outermost sensors.
+
+    With this factor, the bands contain 95 % of the values that are predicted for the uppermost and
+    the lowest sensor from the other sensors. The factor is at least 1.
+    """
     residual, spread = left_out(field, times)
     place = np.where(np.isfinite(residual), field.samples.depth[times], np.nan)
     upper, lower = (f.reduce(place, axis=1)[:, None] for f in (np.fmin, np.fmax))

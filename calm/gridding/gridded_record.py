@@ -150,11 +150,13 @@ def grid(
     ----------
     depths : result of `calm.estimate_motion`, its `xarray.Dataset`, or the path of a file from
         ``calm motion``
-    values : records of the instruments: paths, texts ``LABEL=PATH``, `xarray.Dataset` with the
-        contents of such a file, or `pandas.DataFrame` of one instrument, with an index of times and
-        columns such as ``temperature[degC]``. A mapping from labels to records is also accepted
+    values : records of the instruments. A record is a path, a text ``LABEL=PATH``, an
+        `xarray.Dataset` with the contents of an instrument file, or a `pandas.DataFrame` of one
+        instrument with an index of times and columns such as ``temperature[degC]``. A mapping from
+        labels to records is also accepted
     levels : depths of the levels [m], or a text such as ``0:20:1500``
-    step : interval over which values are averaged [s]; by default, about the times of `depths`
+    step : interval over which values are averaged [s]; by default, values are averaged around the
+        times of `depths`
     variables : `temperature`, `salinity`, `u` or `v`; all by default. Names in capitals, such as
         `TEMP`, give names in capitals in the dataset
     method : `depth-time`, or `depth` to treat each time separately

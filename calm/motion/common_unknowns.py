@@ -1,7 +1,8 @@
-"""Unknowns common to a whole record: factors on the line, the datum, and sensor offsets.
+"""Unknowns that are common to a whole record.
 
-The datum is a depth error common to all sensors. The linear model also serves to find sensor faults
-(slips, drifts and common steps).
+The unknowns are factors on the line (drag, buoyancy, lengths), the datum, and the sensor offsets.
+The datum is a depth error that all sensors share. The linear model of the readings is also used to
+find sensor faults: slips, drifts and common steps.
 """
 
 from __future__ import annotations
@@ -72,7 +73,11 @@ def common_beforehand(
 
 
 def fixed_slopes(common: Floats) -> Floats:
-    """Append columns for the datum and the offsets to the derivatives `common` (n, s, f)."""
+    """Return the derivatives (n, s, q) of the readings with respect to the common unknowns.
+
+    `common` (n, s, f) are the derivatives with respect to the factors. The derivatives with respect
+    to the datum and the offsets, which are 0 or 1, are appended.
+    """
     n, s, _ = common.shape
     offsets = np.broadcast_to(np.eye(s), (n, s, s))
     return np.concatenate([common, np.ones((n, s, 1)), offsets], axis=2)
@@ -102,7 +107,10 @@ LONGEST_MEMORY = 25  # maximum number of times over which the error correlation 
 
 
 def repeated(pull: Floats) -> float:
-    """Return the number of successive times that share an error (integral time scale of `pull`)."""
+    """Return the number of successive times that share an error.
+
+    The number is the integral time scale of the series `pull`, in time steps.
+    """
     one = pull - pull.mean()
     whole = float(one @ one)
     total, chance = 1.0, 2.0 / np.sqrt(max(len(one), 1))
@@ -146,7 +154,10 @@ class LinearLaw:
         return np.asarray((ROBUST + self.known.sum(axis=1)) / (ROBUST + misfit))
 
     def pulls(self, seen: Floats, left: Floats) -> Floats:
-        """Return log-likelihood gradients (n, q), for slopes (n, s, q) and residuals (n, s)."""
+        """Return the gradient (n, q) of the log-likelihood at each time.
+
+        `seen` (n, s, q) are the derivatives of the readings, and `left` (n, s) the residuals.
+        """
         return np.asarray(np.einsum("n,nsq,nst,nt->nq", self.weight, seen, self.inverse, left))
 
     def normal(self, seen: Floats) -> Floats:
@@ -160,14 +171,14 @@ RAMPS: Mapping[int, float] = {-2: 1.0, -3: 0.3}  # duration of each drift, as a 
 
 
 def moved_by(code: int, fall: Floats, share: Floats) -> Floats:
-    """Return the change (n,) in the reading of a sensor per metre of an offset, slip or drift.
+    """Return the change (n,) in the readings of a sensor due to a fault of 1 m.
 
-    `fall` and `share` (n,) are as in `LinearLaw`. `code` is
+    `fall` and `share` (n,) are as in `LinearLaw`. `code` gives the kind of the fault:
 
-    - 0 for an offset;
-    - `MISHUNG` for a wrong position on the line;
-    - a key of `RAMPS` for a drift;
-    - otherwise the index of the time of a slip.
+    - 0: offset;
+    - `MISHUNG`: wrong position on the line;
+    - a key of `RAMPS`: drift;
+    - another number: slip, where the number is the index of the time of the slip.
     """
     if code in RAMPS:
         return np.minimum(share / RAMPS[code], 1.0)
@@ -185,14 +196,15 @@ def chance_of(code: int, times: int) -> tuple[float, float]:
 
 
 def step_times(law: LinearLaw, covariance: Floats, columns: Sequence[Floats]) -> list[int]:
-    """Return the index of the most likely start of each candidate change in the readings.
+    """Return the most likely start of each possible step in the readings, as the index of a time.
 
-    A change lasts to the end of the record. The index is 0 if too few readings show the start.
+    A step lasts to the end of the record. The start has at least `FEWEST` affected times before
+    and after it; otherwise, the index is 0.
 
     Parameters
     ----------
     covariance : (q, q) prior covariance of the common unknowns
-    columns : (n, s) effect of each change of 1 m on the readings
+    columns : for each possible step, the effect (n, s) of 1 m on the readings
     """
     inverse = np.linalg.inv(law.normal(law.fixed) + np.linalg.inv(covariance))
     left = law.raw - law.fixed @ (inverse @ law.pulls(law.fixed, law.raw).sum(axis=0))

@@ -202,10 +202,10 @@ class Task:
     faults: tuple[Fault, ...] | None = None
 
     def columns(self, start: int, stop: int) -> tuple[Profiles, dict[str, NDArray[np.float64]]]:
-        """Estimate the depths of the line, and related results, in the most likely currents.
+        """Estimate the depths of the line and related results at the times from `start` to `stop`.
 
-        The times are from `start` to `stop`. Return the profiles, and columns with the names of
-        `OF_MOTION`.
+        Return the profiles in the most likely currents, and the additional variables of the result
+        file by the names in `OF_MOTION`.
         """
         times, smoother = slice(start, stop), self.smoother
         one = self.measured.at(times)
@@ -259,10 +259,10 @@ class Task:
 def without_current(
     profiles: Profiles, lost: NDArray[np.bool_], false: NDArray[np.bool_] | None
 ) -> Profiles:
-    """Set the results to NaN at the times in the mask `lost` (n,), far from any measured current.
+    """Set the results to NaN at times that are far from any measured current.
 
-    The status becomes "implausible-current" where the mask `false` (n,) is true, and else
-    "no-current".
+    The mask `lost` (n,) is true at these times. Their status becomes "implausible-current" if the
+    mask `false` (n,) is also true, and "no-current" otherwise.
     """
     status = np.where(lost, STATUSES.index("no-current"), profiles.status)
     if false is not None:
@@ -289,7 +289,10 @@ class MeasuredRecord(Record):
         self.time, self.source, self.notes = measured.time, dict(source), tuple(notes)
 
     def profiles(self, start: int, stop: int) -> Levels:
-        """Return the levels of profiles as `Record.profiles` does; depths on the line are NaN."""
+        """Return depths and currents of the levels, in the form of `Record.profiles`.
+
+        The depth of a level that moves with the line is NaN.
+        """
         one = self._measured.at(slice(start, stop))
         return one.level_depth, one.u, one.v, None
 

@@ -20,7 +20,7 @@ class ReadCurrents:
 
 @dataclass(frozen=True)
 class Linear:
-    """Depths of the points, linearised about currents with given factors."""
+    """Linear model of the depths of the points, as functions of factors on the currents."""
 
     logs: Floats  # (n, g) the state: logarithms of the factors on the currents
     depth: Floats  # (n, p) depths at the state [m]
@@ -28,7 +28,7 @@ class Linear:
     common: Floats  # (n, p, f) derivatives with respect to the logarithms of the common factors
 
     def moved(self, logs: Floats, depth: Floats) -> Linear:
-        """Return the linear model at new logarithms of the factors, with known depths.
+        """Return the linear model at a new state `logs`, where the depths are `depth`.
 
         The slopes are updated by Broyden's method.
         """
@@ -46,11 +46,14 @@ class SpeedLaw:
 
     mean: Floats  # (k,) mean of the logarithms of the speeds [m/s]
     covariance: Floats  # (k, k) covariance of these logarithms
-    # stored models of the line: first at the mean speeds, then at the times from which the
+    # stored models of the line: first at the median speeds, then at the times from which the
     # distribution was learnt; their states are relative to `mean`
     kept: Linear | None = None
 
     def read(self, level: Floats) -> ReadCurrents:
-        """Return the mean speeds as currents to the east, at the depths (n, k) [m]."""
+        """Return eastward currents with the median speeds of the distribution.
+
+        `level` (n, k) are the depths of the knots [m].
+        """
         u = np.tile(np.exp(self.mean), (len(level), 1))
         return ReadCurrents(level, u, np.zeros_like(u))

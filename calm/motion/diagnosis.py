@@ -1,8 +1,9 @@
 """Diagnosis of sensors: clocks, gains, offsets, drifts, slipped clamps.
 
-Each fault is an additional unknown in the fit of the whole record, weighed by a Bayes factor (Kass
-and Raftery 1995). Errors follow Student's t distribution, and an error that lasts for several times
-counts once. Faults are accepted one by one, the most likely first.
+Each fault is an additional unknown in the fit of the whole record. A Bayes factor (Kass and Raftery
+1995) compares the fit with and without the fault. Errors follow Student's t distribution. An error
+that persists over several successive times counts as one error. Faults are accepted one by one, the
+most likely first.
 """
 
 from collections.abc import Iterator, Sequence
@@ -42,8 +43,9 @@ LEAST = {
 }  # fmt: skip
 """Smallest faults that are reported.
 
-Units: m for `moved`, `offset`, `drift` and `slip`; for `clock`, hours or time steps of the record,
-whichever are longer; 1 for `gain`; logarithm of a factor for the other kinds.
+The values for `moved`, `offset`, `drift` and `slip` are in m. The value for `clock` is in hours, or
+in time steps of the record if these are longer than an hour. The value for `gain` is a pure number.
+The other values are logarithms of factors.
 """
 RIVALS = 3  # maximum number of rival explanations reported
 FINEST = 0.02  # uncertainty added to the lag of a clock, as a share of the time step of the record
@@ -52,7 +54,7 @@ FEWEST = 20  # least number of times for a diagnosis
 
 @dataclass(frozen=True)
 class _Found:
-    """Likelihood of the pressures with a set of faults."""
+    """Fit of a set of faults to the pressures, with its likelihood."""
 
     log: float  # logarithm of the likelihood
     value: float  # size of the last fault
@@ -76,9 +78,10 @@ def diagnosed(task: Task) -> tuple[Fault, ...]:
 
 
 def law_near(task: Task) -> tuple[LinearLaw | None, list[Suspect]]:
-    """Return the linear model of the readings, and possible faults of line and currents.
+    """Return the linear model of the readings, and the possible faults of line and currents.
 
-    The model is None without measurements, and the list is empty without measured currents.
+    If there are no measurements, the model is None. If no currents were measured, the list of
+    possible faults is empty.
     """
     times = chosen_times(task.measured, task.smoother is None)
     if not len(times):
@@ -128,7 +131,10 @@ class Diagnosis:
         return self._kept[steps]
 
     def _at(self, late: float) -> Floats:
-        """Return (n, s) depths read by the sensors `late` hours after each time [m]."""
+        """Return the depths (n, s) [m] that the sensors read at a lag of `late` hours.
+
+        The readings are interpolated to the times of the model plus the lag.
+        """
         whole = round(late / self.step) if self.step > 0.0 else 0
         part = late / self.step - whole if self.step > 0.0 else 0.0
         before, there, after = (self._after(steps) for steps in (whole - 1, whole, whole + 1))
@@ -191,9 +197,10 @@ class Diagnosis:
         return self.law.raw + sum(one.shift for one in taken)
 
     def fitted(self, taken: list[Suspect], last: Suspect | None, alike: float) -> _Found:
-        """Fit the sizes of the faults `taken` and `last`, and return the likelihood of the result.
+        """Fit the sizes of faults to the readings, and return the fit with its likelihood.
 
-        `alike` is the number of successive times that share an error.
+        The faults are those in `taken` and, if given, `last`. `alike` is the number of successive
+        times that share an error.
         """
         whole = taken if last is None else [*taken, last]
         free = [one for one in whole if one.wide]
@@ -291,7 +298,11 @@ class Diagnosis:
         return float(((ROBUST + count) * np.log1p(misfit / ROBUST)).sum())
 
     def _late(self, taken: list[Suspect], left: Floats, mine: NDArray[np.bool_]) -> Suspect:
-        """Find the most likely clock error shared by the sensors in the mask `mine`."""
+        """Find the most likely clock error of the sensors in the mask `mine`.
+
+        All these sensors have the same error. `taken` are the faults already accepted, and `left`
+        are the residuals [m].
+        """
         reach, step = int(FURTHEST / self.step) if self.step > 0.0 else 0, self.step
 
         def miss(late: float) -> float:

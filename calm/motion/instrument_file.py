@@ -110,7 +110,11 @@ def _read(path: Path, seabed: float) -> Instruments:
 def _who(
     dataset: Dataset, time: str, seabed: float, path: Path
 ) -> tuple[str | None, tuple[Identity, ...]]:
-    """Return the dimension of the instruments (None for a single one) and their identities."""
+    """Return the instrument dimension of a file, and the identity of each instrument.
+
+    The dimension is None for a file of a single instrument. An identity is a label, a serial number
+    and a nominal depth.
+    """
     others = [str(dim) for dim in dataset.sizes if dim != time]
     for dim in sorted(others, key=lambda dim: cf_files.labels_along(dataset, dim) is None):
         if dataset.sizes[dim] > 1 or cf_files.labels_along(dataset, dim) is not None:

@@ -29,7 +29,10 @@ class LineResponse:
         self.measured, self.forward, self.shifted = measured, forward, shifted
 
     def depths(self, read: ReadCurrents, logs: Floats, forward: Forward | None = None) -> Floats:
-        """Return depths (n, p) [m] in the currents multiplied by the factors exp(`logs`) (n, k)."""
+        """Return the depths (n, p) of the points [m] in the currents `read`, multiplied by factors.
+
+        The factors are exp(`logs`) (n, k). If `forward` is given, it replaces `self.forward`.
+        """
         factor = np.exp(logs)
         return (forward or self.forward).depths(read.level, read.u * factor, read.v * factor)
 
@@ -48,7 +51,10 @@ class LineResponse:
 
 
 def _slopes(ahead: Sequence[Floats], there: Floats) -> Floats:
-    """Return derivatives (n, p, m); `ahead` are the depths after a step in each of m unknowns."""
+    """Return the derivatives (n, p, m) of the depths `there` with respect to m unknowns.
+
+    `ahead` has the depths (n, p) after a step in each of these unknowns.
+    """
     columns = [(one - there) / STEP for one in ahead]
     return np.nan_to_num(np.stack(columns, -1)) if columns else np.zeros((*there.shape, 0))
 
@@ -100,9 +106,10 @@ class Forward:
         return points(self.solve(depth, u, v))
 
     def slopes(self, depth: Floats, u: Floats, v: Floats) -> tuple[Floats, Floats]:
-        """Return depths (n, p) of the points [m], and their derivatives (n, p, 2 k) [s].
+        """Return the depths (n, p) of the points [m], and their derivatives (n, p, 2 k) [s].
 
-        The derivatives are with respect to u at the k levels, followed by v.
+        The first k derivatives are with respect to u at the k levels, and the others with respect
+        to v.
         """
         profiles, slopes = self._batch.slopes(u, v, depth)
         return points(profiles), slopes
@@ -144,13 +151,12 @@ LOCAL = 0.3
 
 
 def own_errors(depth: Floats, still: Floats, learnt: bool) -> Floats:
-    """Return the error covariance (n, p, p) of the computed depths, for a relative error of 1 [m²].
+    """Return the error covariance (n, p, p) of the computed depths [m²], if the error share is 1.
 
-    Errors are correlated over a quarter of the line. The error at a point is
-
-    - without `learnt` currents: a share of the knockdown of the point;
-    - with `learnt` currents, which absorb such errors: a share of the contribution of each stretch
-      of the line below the point, plus a smaller share of the knockdown of the point.
+    Errors are correlated over a quarter of the line. If the currents were measured, the error at a
+    point is a share of its knockdown. Currents that are inferred from the pressures (`learnt`)
+    absorb such errors. The error at a point is then a share of the knockdown of each stretch of the
+    line below the point, plus a smaller share of the knockdown of the point.
     """
     if not learnt:
         own = np.maximum(np.nan_to_num(depth - still), 0.0)

@@ -7,9 +7,9 @@ The unknowns at each time are
 - the tide.
 
 The unknowns of the whole record are drag factors, a depth error common to all sensors (the datum),
-and sensor offsets. Datum and sensor positions may change in rare steps. Most priors are normal.
-Errors of meters and sensors, and values and steps of datum and sensor positions, have Student's t
-distributions.
+and sensor offsets. The datum and the positions of the sensors on the line may change in rare steps.
+Most priors are normal distributions. Student's t distributions are used for the errors of meters
+and sensors, for the datum and the sensor positions, and for the steps of both.
 
 The method is a Kalman smoother with Gauss-Newton steps over the whole record. Expectation and
 maximisation (Dempster, Laird and Rubin 1977) estimate the meter error for each quality flag.
@@ -90,7 +90,10 @@ FURTHEST = 0.7  # maximum logarithm of a factor
 
 @dataclass(frozen=True)
 class Knots:
-    """Depths (interpolation knots) at which the current is estimated, and weights at the levels."""
+    """Depths at which the current is estimated, and weights for interpolation to the levels.
+
+    These depths are interpolation knots.
+    """
 
     depth: Floats  # (K,) depths of the knots in still water, increasing [m]
     level: Floats  # (k, K) weights with which the knots contribute to the current at each level
@@ -180,14 +183,16 @@ class ErrorScales:
 def next_shares(
     shares: Floats, alike: Floats, square: Floats, covariance: Floats, hours: float
 ) -> Floats:
-    """Return the relative errors (z,) of z stretches of the line, after one step of Fisher scoring.
+    """Improve the error shares (z,) of z stretches of the line by one step of Fisher scoring.
+
+    The error share of a stretch is its standard error divided by its knockdown.
 
     Parameters
     ----------
-    shares : (z,) present relative errors, as shares of the knockdown of each stretch
+    shares : (z,) present error shares
     alike : (z, z) prior correlation of the errors
-    square, covariance : (z, z) record means of the products of estimated errors, and of their
-        posterior covariance, both relative to `shares`
+    square : (z, z) products of the estimated errors, relative to `shares`; mean over the record
+    covariance : (z, z) posterior covariance of these errors; mean over the record
     hours : length of the record [h]
     """
     inverse = np.linalg.inv(alike)
@@ -290,7 +295,10 @@ class CurrentSmoother:
         return forward.depths(self.knot_depth[times], *self.currents(state))
 
     def forward(self, factor: Floats) -> Forward:
-        """Return the mooring with line factors of given logarithms (f,), from a small cache."""
+        """Return the mooring with given factors on its line; recent moorings are cached.
+
+        `factor` (f,) are the logarithms of the factors.
+        """
         key = tuple(factor.tolist())
         if key not in self._forwards:
             factors = dict(zip(self.names, np.exp(factor).tolist(), strict=True))
@@ -300,7 +308,10 @@ class CurrentSmoother:
         return self._forwards[key]
 
     def linear(self) -> Floats:
-        """Return depths (n, p) of the points [m], and update derivatives for changed currents."""
+        """Return the depths (n, p) of the points in the estimated currents [m].
+
+        If the currents or the factors have changed much, their derivatives are updated, too.
+        """
         now, factor = self.state[:, self.columns.current], self.factor
         far = np.abs(now - self._slopes_at).max(axis=1) > STALE
         far |= (np.abs(factor - self._slopes_factor) > FACTOR_STEP).any()
@@ -333,10 +344,11 @@ class CurrentSmoother:
 
     @cached_property
     def _stretches(self) -> tuple[Floats, NDArray[np.int64], Floats]:
-        """Limits of the stretches of the line, stretch of each point, and error correlation.
+        """Division of the line into z stretches, for the errors of the line.
 
-        The limits are depths in still water [m], from the seabed up. The correlation is between the
-        errors of the stretches.
+        The value has the limits (z + 1,) of the stretches, the index (p,) of the stretch of each
+        point, and the correlation (z, z) between the errors of the stretches. The limits are depths
+        in still water [m], from the seabed up.
         """
         edges = np.linspace(self.still.max(), self.still.min(), STRETCHES + 1)
         own = np.clip(np.searchsorted(-edges, -self.still, "right") - 1, 0, STRETCHES - 1)
@@ -365,7 +377,10 @@ class CurrentSmoother:
     # --- the law
 
     def meter_law(self) -> StateSpace:
-        """Return a state-space model of the currents at the knots, as read by the meters alone."""
+        """Return a state-space model of the currents at the knots, without the pressures.
+
+        The only readings of this model are those of the current meters.
+        """
         one, both = self.measured, np.eye(2)
         apart = np.abs(self.knots.depth[:, None] - self.knots.depth)
         alike = np.exp(-apart / CURRENT_REACH) * np.outer(self.spread, self.spread)
@@ -475,7 +490,10 @@ class CurrentSmoother:
         return np.asarray(gone[:, :1] + gone[:, 1 + sensors :] * self.fall)
 
     def _place(self) -> None:
-        """Update the factors by a Gauss-Newton step, with currents from the meters alone."""
+        """Update the factors on the line by a Gauss-Newton step.
+
+        The currents in this step are estimated from the current meters alone.
+        """
         times = chosen_times(self.measured)
         if not self.names or not len(times):
             return
@@ -500,7 +518,10 @@ class CurrentSmoother:
         self.common_covariance[: len(drag), : len(drag)] += np.outer(drag, drag)
 
     def _heavy(self, square: Floats) -> Floats:
-        """Return initial variances of Student-distributed unknowns from their expected squares."""
+        """Return initial variances of the unknowns with Student's t distributions.
+
+        `square` are the expected squares of these unknowns.
+        """
         wide = self.begin + self.tail * (square - self.begin)
         return np.asarray(np.maximum(self.begin, wide), np.float64)
 
@@ -666,10 +687,10 @@ class CurrentSmoother:
         return np.asarray(np.nan_to_num(1.0 / (1.0 + np.exp(-np.clip(log, -50.0, 50.0)))))
 
     def by_meters(self, times: NDArray[np.int64]) -> tuple[LinearLaw, ReadCurrents, Linear]:
-        """Return a linear model of the pressures, with currents from the meters alone.
+        """Return a linear model of the readings, for currents from the current meters alone.
 
-        Also return these currents at the knots, and the depths of the line. The derivatives of the
-        depths are with respect to the logarithm of a factor on all speeds.
+        Also return these currents at the knots, and a linear model of the depths of the line in
+        these currents. The state of the second model is the logarithm of a factor on all speeds.
         """
         one, at, factor, law = self.measured, self.columns, self.factor, self.meter_law()
         wide = WIDER**2 * law.steady

@@ -115,9 +115,9 @@ def common_times(
 ) -> Times:
     """Choose the common times of all measurements.
 
-    They are the times of the first record (currents before sensors), and those times of other
-    records that are more than half a time step away. From bursts of such times within a quarter of
-    the step, only the first time is used.
+    The first record gives all its times; records of currents come before records of sensors. Each
+    further record adds its times that are more than half a time step from all times chosen before.
+    If such times are closer together than a quarter of the step, only the first of them is added.
     """
     everything: list[CurrentMeasurements | InstrumentSeries] = [*currents, *sensors]
     times = everything[0].time
@@ -289,7 +289,11 @@ def joined(
 
 
 def _worse_flags(one: CurrentMeasurements, k: int, time: Times) -> NDArray[np.int8]:
-    """Return the worse of the flags before and after each time; 9 outside the record."""
+    """Return a quality flag of level k at each time of `time`.
+
+    The flag is the worse of the two flags at the nearest earlier and later times of the record. It
+    is 9 outside the record.
+    """
     after = np.searchsorted(one.time, time)
     upper, lower = np.minimum(after, len(one.time) - 1), np.maximum(after - 1, 0)
     exact = one.time[upper] == time

@@ -89,12 +89,13 @@ def fitted(requested: Sequence[str] = (), currents: bool = True) -> tuple[str, .
 class RecoveredMooring:
     """A recovered mooring with its records.
 
-    Creating the object reads and corrects the records. The first attributes are parameters of
-    `estimate_motion`, with files as paths or ``LABEL=PATH``.
+    The constructor reads and corrects the records. Its parameters are those of `estimate_motion`,
+    but files are given as paths or ``LABEL=PATH``.
 
     Attributes
     ----------
-    moved : step common to the depths of all sensors; only if no currents were measured
+    moved : step that is common to the depths of all sensors; empty if there is no such step, or if
+        currents were measured
     measured, notes : measurements, and sentences on them
     source : names and hashes of the source files
     """

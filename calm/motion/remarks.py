@@ -51,7 +51,11 @@ class Fault:
 
     @property
     def size(self) -> float:
-        """Size of the fault: 0 without a fault; the logarithm of `value` for `OF_LINE`."""
+        """Size of the fault, on a scale where 0 means that there is no fault.
+
+        The size of a gain is `value` minus 1. The size of a kind in `OF_LINE` is the logarithm of
+        `value`. For other kinds, the size is `value`.
+        """
         if self.kind in OF_LINE:
             return float(np.log(self.value))
         return self.value - (self.kind == "gain")
@@ -138,7 +142,10 @@ class Fault:
 
 
 def false_current_times(names: Sequence[str], time: Times, doubt: Floats) -> dict[str, Times]:
-    """Return, for each level by name, the times of probably false currents (`doubt` (n, k))."""
+    """Return the times at which the current at a level is probably false, by name of the level.
+
+    `doubt` (n, k) is the probability that a reading is false.
+    """
     hit = doubt > FALSE
     return {name: time[hit[:, k]] for k, name in enumerate(names) if hit[:, k].any()}
 
@@ -173,7 +180,10 @@ def alone_remarks(common: Common) -> list[str]:
 
 
 def datum_remarks(common: Common, seabed: float) -> list[str]:
-    """Return a remark if all sensors share a large offset, compared with the water depth [m]."""
+    """Return a remark if all sensors have a common offset that is too large.
+
+    The limit is a share of the water depth `seabed` [m], and at most `FAR_DATUM`.
+    """
     if abs(common.datum) <= min(FAR_OFFSET * common_unknowns.DATUM * seabed, FAR_DATUM):
         return []
     return [

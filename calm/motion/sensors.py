@@ -117,7 +117,10 @@ def _from_arrays(
 
 
 def _find(dataset: xr.Dataset) -> tuple[str, bool]:
-    """Find the pressure variable, else a depth variable; the flag is true for pressure."""
+    """Return the name of the pressure variable, or of a depth variable if there is no pressure.
+
+    Also return whether the variable is a pressure.
+    """
     if found := instrument_series.named(dataset, *instrument_series.PRESSURE):
         return found[0], True
     for name in map(str, dataset.cf.standard_names.get("depth", [])):
@@ -131,7 +134,7 @@ def _find(dataset: xr.Dataset) -> tuple[str, bool]:
 
 
 def _from_csv(path: Path, latitude: float) -> list[InstrumentSeries]:
-    """Read a table ``time,LABEL[dbar],…``, or with units of length instead of dbar."""
+    """Read a table ``time,LABEL[dbar],…``. A column may have depths instead: ``LABEL[m]``."""
     table = read_time_columns(path, ("pressure", "length"), "LABEL[dbar]")
     summaries, depths = {}, []
     for label, dimension, values in zip(table.names, table.dimensions, table.values.T, strict=True):
@@ -319,9 +322,9 @@ EXPLAINED, BEYOND, LEAST = 0.05, 0.2, 1.0
 def metre_notes(measured: Floats, expected: Floats, latitude: float) -> list[str]:
     """Return a remark if depths in metres seem to be recorded as pressures in dbar, or the reverse.
 
-    The measured depths (s,) are then about 1 % less or more than the expected depths (s,) [m],
-    which must not depend on these readings. After conversion, the depths must agree without a
-    common offset.
+    Such readings give measured depths (s,) that differ by about 1 % from the expected depths (s,)
+    [m]. The expected depths must not depend on these readings. A remark is returned only if the
+    depths agree after conversion of the unit, without a common offset.
     """
     off = measured - expected
     if len(off) < 2 or not rms(off) > LEAST:
@@ -397,7 +400,11 @@ def _exchanged(labels: Sequence[str], least: Floats, place: Floats) -> list[str]
 
 
 def _other_unit(least: Floats, place: Floats) -> str:
-    """Return a likely confusion of units ("psi for dbar?") if it explains all depths, else ""."""
+    """Return a confusion of units that explains all depths, such as "psi for dbar?".
+
+    `least` are the smallest measured depths, and `place` the depths in still water [m]. The result
+    is empty if no confusion explains all depths.
+    """
     known = np.isfinite(least)
     for unit, ratio in UNITS.items():
         meant = ratio * place[known]

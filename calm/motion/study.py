@@ -228,7 +228,10 @@ def judged(
 
 
 def knockdown(used: MooringMeasurements) -> Floats:
-    """Return the knockdown (n,) of the highest sensor with a pressure, from its least depth [m]."""
+    """Return the knockdown (n,) at each time, from the highest sensor with a reading [m].
+
+    The knockdown of a sensor is measured from its smallest depth in the record.
+    """
     down = np.full(len(used.time), np.nan)
     for j in range(len(used.label)):
         depth = used.depth[:, j]

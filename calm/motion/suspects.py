@@ -48,9 +48,9 @@ def line_suspects(task: Task, read: ReadCurrents, at: Linear, share: Floats) -> 
     Parameters
     ----------
     read : currents at several times
-    at : depths of the line in these currents, with derivatives with respect to the logarithm of a
-        factor on all speeds
-    share : elapsed share of the record at the times with an equilibrium
+    at : linear model of the depths of the line in these currents. The state of the model is the
+        logarithm of a factor on all speeds
+    share : elapsed share of the record, at each of these times with an equilibrium of the line
     """
     factors = task.common.factors
     good = np.isfinite(at.depth).all(axis=1)
@@ -83,10 +83,11 @@ TURNED, UNLIKE = 10.0, 5.0  # rotation [degrees] and speed ratio above which a m
 def meter_remarks(measured: MooringMeasurements, names: Sequence[str]) -> list[str]:
     """Return a remark on each current meter with rotated or mirrored readings, or a wrong unit.
 
-    A meter is reported if it disagrees with its two nearest meters, while those two agree. The
-    measure is the complex correlation r of the currents, whose phase is the mean angle between them
-    (Kundu 1976, J. Phys. Oceanogr. 6, 238-242). For n independent times, the standard deviation of
-    the phase is sqrt((1 - r²) / (2 r² n)).
+    A meter is reported if it disagrees with its two nearest meters, and these two meters agree with
+    each other. The measure of agreement is the complex correlation r of the currents at two meters
+    (Kundu 1976, J. Phys. Oceanogr. 6, 238-242). The phase of r is the mean angle between the
+    currents. For n independent times, this phase has the standard deviation
+    sqrt((1 - r²) / (2 r² n)).
     """
     flow = np.where(measured.flag <= GOOD, measured.u + 1j * measured.v, np.nan)
 

@@ -77,10 +77,10 @@ class CurrentsState:
 def posterior(
     one: MooringMeasurements, at: Linear, spread: Floats, common: Common, still: Floats
 ) -> Posterior:
-    """Return the posterior of currents and depths, from a linear model of the line.
+    """Return the posterior of currents and depths, given the measured depths in `one`.
 
-    `spread` (g, g) is the prior covariance of the logarithms of g factors on the currents. `still`
-    (p,) are the depths in still water [m].
+    `at` is the linear model of the line. `spread` (g, g) is the prior covariance of the logarithms
+    of the g factors on the currents. `still` (p,) are the depths of the points in still water [m].
     """
     n, p, g = at.slope.shape
     s, f = len(one.point), at.common.shape[2]
@@ -226,10 +226,10 @@ def learn_currents(
 
 
 def raised(mooring: Design, measured: MooringMeasurements) -> float:
-    """Return the depth error [m] of the sensor farthest above its still-water depth; negative or 0.
+    """Return the largest error of a sensor that reads above its depth in still water [m].
 
-    Since currents only lower a line, this is an error of water depth, length or position in the
-    file.
+    Currents can only lower a line. Such a reading therefore shows that the water depth, a length or
+    a position in the mooring file is wrong. The result is negative, or 0 if the error is small.
     """
     depth = measured.depth - measured.moved[:, None]
     known = np.isfinite(depth).any(axis=0)
@@ -240,7 +240,10 @@ def raised(mooring: Design, measured: MooringMeasurements) -> float:
 
 @dataclass(frozen=True)
 class _Fit:
-    """Posterior of the times used for learning, for one distribution of the speeds."""
+    """Posterior of the currents at the times used for learning.
+
+    The prior is one trial distribution of the speeds, `law`.
+    """
 
     moments: LineResponse
     common: Common
@@ -297,7 +300,10 @@ def _chosen(measured: MooringMeasurements) -> Integers:
 
 
 def _worst(fit: _Fit, at: Linear, common: Common, used: Integers) -> Common:
-    """Estimate the relative error of the line: RMS of trial values, weighted by likelihood."""
+    """Return `common` with a new estimate of `worst`, the relative error of the line.
+
+    The estimate is the root mean square of trial values, weighted by their posterior probability.
+    """
     now, log = fit.posterior(at), []
     white = np.linalg.solve(np.linalg.cholesky(now.expected), now.innovation[:, :, None])
     alike = max(repeated(column) for column in white[:, :, 0].T)
@@ -311,7 +317,11 @@ def _worst(fit: _Fit, at: Linear, common: Common, used: Integers) -> Common:
 
 
 def _placed(begun: Common, known: Common, fit: _Fit, at: Linear, found: Posterior) -> Common:
-    """Return factors, datum and offsets after a Gauss-Newton step, and their covariance."""
+    """Improve the factors, the datum and the offsets by a Gauss-Newton step.
+
+    Return `known` with the new values and their covariance. `begun` is the prior of the values, and
+    `found` the posterior of the currents.
+    """
     seen = fixed_slopes(at.common[:, fit.moments.measured.point])
     inverse = np.linalg.inv(found.expected)
     pulls = np.einsum("nsq,nst,nt->nq", seen, inverse, found.innovation)
@@ -325,7 +335,11 @@ def _placed(begun: Common, known: Common, fit: _Fit, at: Linear, found: Posterio
 
 
 def unknown_state(moments: LineResponse, common: Common) -> CurrentsState:
-    """Find the most likely currents at each time, starting from the stored fit nearest in depth."""
+    """Find the most likely currents at each time.
+
+    The iteration at a time starts from a stored model of the line: the model with the sensor depths
+    nearest to the measured depths.
+    """
     law, one = common.law, moments.measured
     assert law is not None and law.kept is not None
     read, kept, still = law.read(one.level_depth), law.kept, moments.forward.still

@@ -51,9 +51,9 @@ BUOY_LIFT = _BUOY_TENSION * sin(_BUOY_ANGLE)
 
 @cache
 def _only(k: float, weight: float, **given: float) -> ChartSolution:
-    """Return the chart solution for a cable with three given quantities.
+    """Return the first cable that `chart_solve` finds for three given quantities.
 
-    Of several solutions, the first is returned, which lies above the lower end A everywhere.
+    In the cases here, no part of this cable is below its lower end A.
     """
     answer = chart_solve(k, weight, **given)
     if not answer.solutions:
@@ -231,7 +231,7 @@ def _bare(speed: float) -> Wake:
 
 
 def _coefficient(angle: float) -> float:
-    """Return the drag coefficient C* of the example's cable at an angle [rad]."""
+    """Return the drag coefficient C* of the strumming cable of `_example` at an angle [rad]."""
     return _LAW.coefficient(angle, radians(_example(True).angle))
 
 
@@ -303,7 +303,7 @@ _LENGTH, _UNIT = 1.25, 0.5
 
 @cache
 def _cable(start: float, mean: float) -> Station:
-    """Return the end of the cable under unit load.
+    """Return the upper end of the cable in the figure, for √((μg)² + (kV)²) = 1.
 
     `start` and `mean` are the angles α₀ and α_d [degrees].
     """

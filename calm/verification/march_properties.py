@@ -171,9 +171,10 @@ def _reaction() -> float:
 
 
 def _tension_by_height() -> float:
-    """Return the largest |T_top − T_bottom − w Δz| of a cable, divided by the maximum tension.
+    """Return the largest error of the relation T_top − T_bottom = w Δz, relative to the tension.
 
-    The cable has no tangential drag.
+    The relation is exact for a cable without tangential drag. The error is the largest over the
+    cables of a line, divided by the maximum tension.
     """
     line = line_of(
         *(

@@ -81,7 +81,8 @@ class Case:
     def check(self) -> CaseOutcome:
         """Compute the value with CALM, and return the outcome.
 
-        An exception in the computation is the reason for a missing value.
+        If the computation raises an exception, the outcome has no value, and the exception is the
+        reason.
         """
         try:
             return CaseOutcome(self, float(self.got()))
@@ -234,7 +235,8 @@ def cable(
     ----------
     length, diameter : unstretched length and diameter [m]
     weight : weight in water [N/m]
-    cn, ct : normal drag coefficient (reference area D × length), and tangential one (π D × length)
+    cn : normal drag coefficient, for the reference area D × length
+    ct : tangential drag coefficient, for the reference area π D × length
     compliance : strain per newton [1/N]
     """
     normal, tangential = HALF_DENSITY * diameter * cn, HALF_DENSITY * pi * diameter * ct
@@ -339,7 +341,7 @@ def ends_of(solution: Solution) -> Ends:
 def finely(made: Callable[..., tuple[Line, Water]], *given: float) -> Ends:
     """Solve a line with the settings `FINE`, and return its ends.
 
-    `made` builds the line and the water from the values `given`.
+    The function `made` is called with the values `given`, and returns the line and the water.
     """
     return ends_of(solve_mooring(*made(*given), FINE))
 

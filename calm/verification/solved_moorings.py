@@ -61,7 +61,7 @@ def _figures(place: float, tension: float) -> tuple[CaseColumn[Solution], ...]:
 def _order(coarse: float, fine: float) -> float:
     """Return the order of convergence of the float's depth, from two angle steps [degrees].
 
-    The depths are those before extrapolation.
+    The extrapolation of the solver is not applied to these depths.
     """
     errors = [
         abs(float_depth(solved_s1000(degrees).as_marched) - DEPTH) for degrees in (coarse, fine)

@@ -283,7 +283,8 @@ def _plumb() -> float:
 def _alone() -> float:
     """Return the terminal speed of a heavy sphere [m/s].
 
-    The sphere is on a light thread with a cork, which hardly affect the speed.
+    The sphere falls as the anchor of a thread below a small float. Thread and float are so light
+    that they hardly affect the speed.
     """
     line = line_of(
         LinePiece(0.05, False, 1.0, 1e-3, directional=False), cable(300.0, 1e-6, 1e-6, 1.3, 0.0)

@@ -83,7 +83,10 @@ def _drop(length: float, ends: Ends) -> float:
 
 
 def _fall(speed: float) -> float:
-    """Return T_top − T_bottom of the heavy line [N], with the exact tension at the float."""
+    """Return T_top − T_bottom of the heavy rope of case C4 [N].
+
+    T_top is the exact tension below the float, and T_bottom the tension that CALM computes.
+    """
     at_the_float = hypot(_FLOAT.buoyancy, _FLOAT.normal_drag * speed**2)
     return at_the_float - _rope_ends(_HEAVY, 0.0, speed).tension
 
@@ -97,10 +100,10 @@ def _identity(speed: float) -> Case:
 
 
 def _thread(length: float, force: float, place: float, angle: float) -> list[CaseColumn[Ends]]:
-    """Return the table columns for a float on a thread of a given length [m].
+    """Return the columns of the table of results for a float or ball on a thread.
 
-    `force`, `place` and `angle` are the tolerances of forces [N], positions [m] and angles
-    [degrees].
+    `length` is the length of the thread [m]. `force`, `place` and `angle` are the tolerances of
+    forces [N], positions [m] and angles [degrees].
     """
     return [
         CaseColumn("drag", "N", force, lambda ends: ends.horizontal),

@@ -118,9 +118,10 @@ class _Setting:
         return respond(self.line, self.buoy, waves, sea, drag_factor=drag, first=first, once=once)
 
     def cut_offs(self, sea: SeaState, response: WaveResponse, flow: Floats) -> CutOffs:
-        """Compute the responses for half and for twice the cut-off frequency of a response.
+        """Return the responses to a sea state for three cut-off frequencies of the waves.
 
-        All three responses use the same linearised drag.
+        These are the cut-off frequency of `response`, half of this frequency, and twice this
+        frequency. All three responses have the linearised drag for `flow`.
         """
         last = float(response.omega[-1])
         count = int(np.ceil(np.log(2.0) / np.log(last / float(response.omega[-2])))) + 1
@@ -225,7 +226,8 @@ def _settled(
 ) -> tuple[_Setting, Floats, WaveAccuracy]:
     """Refine elements and frequencies until they suffice for all given sea states.
 
-    Return the setting, the flow past the nodes in the first sea, and the remaining error.
+    Return the refined line with its float and waves, the flow past the nodes in the first sea
+    state, and the remaining error.
     """
     density = leg.water.density_at(np.array(0.0))
     water = Waves(np.zeros(0), toward, leg.water.depth, float(density), leg.water.gravity)

@@ -66,12 +66,12 @@ class Buoy:
     mass, displaced : mass of the float with the pieces on it, and of the displaced water [kg]
     radius, draft : radius of the waterplane, and draft of the float [m]
     drag, heave_drag : K of the drag K|V|V in horizontal flow, and in heave [N/(m/s)²]
-    rao : rows of the prescribed response: angular frequency [rad/s], amplitude [-] and phase
-        [degrees] of heave relative to the wave elevation; optionally amplitude [degrees/m] and
-        phase of pitch
+    rao : prescribed response to the wave elevation, with a row for each frequency: angular
+        frequency [rad/s], amplitude [-] and phase [degrees] of heave; optionally amplitude
+        [degrees/m] and phase [degrees] of pitch
     follows : whether heave and pitch follow the motion of the water surface
     panels : (12, f) result of `panel_response`; None if formulas are used instead
-    profile : (s, 2) radii and heights of horizontal sections of the hull [m], from the keel up;
+    profile : (s, 2) radius and height of each horizontal section of the hull [m], from the keel up;
         None if pitch is not computed
     centre : height of the centre of mass, with the pieces on the float [m]
     bail : height of the attachment point of the line [m]
@@ -106,10 +106,11 @@ class Buoy:
     ) -> tuple[Complexes, Complexes]:
         """Return the dynamic stiffness and the exciting force in heave, complex arrays (f,) [N/m].
 
-        The force is per metre of wave elevation. Unless prescribed or from a panel method, the
-        results are for a disc of radius R, area A and draft T. The added mass is `DISC_ADDED` ρR³,
-        and the Froude-Krylov force ρgA e^(-kT) 2 J1(kR)/(kR). The radiation damping in deep water
-        is k ω |X|² / (2 ρ g²) for the exciting force X (Haskind's relation, Newman 1977, 6.18).
+        The force is per metre of wave elevation. If the response is not prescribed, and there is no
+        result of a panel method, the hull is a disc of radius R, area A and draft T. The added
+        mass of the disc is `DISC_ADDED` ρR³. Its Froude-Krylov force is ρgA e^(-kT) 2 J1(kR)/(kR).
+        Its radiation damping in deep water is k ω |X|² / (2 ρ g²), where X is the exciting force
+        (Haskind's relation, Newman 1977, 6.18).
 
         Parameters
         ----------
@@ -193,9 +194,9 @@ class Buoy:
     ) -> tuple[Floats, Floats, Complexes]:
         """Compute added mass (3, f), damping (3, f) and exciting forces (2, f), as in `pitch`.
 
-        Sources: `END_LOSS` for the added mass of the sections, `DISC_TURNED` for the added moment
-        of inertia of the bottom, and Haskind's relation for the damping, k ω Xi Xj / (4 ρ g²) in
-        deep water (Newman 1977, 6.18).
+        The added mass of the sections follows from `END_LOSS`, and the added moment of inertia of
+        the bottom from `DISC_TURNED`. The damping in deep water is k ω Xi Xj / (4 ρ g²), where Xi
+        and Xj are exciting forces (Haskind's relation, Newman 1977, 6.18).
         """
         radius, height = profile.T
         area = pi * radius**2
@@ -345,9 +346,14 @@ def panel_response(profile: Floats, density: float, gravity: float) -> Complexes
 
     Returns
     -------
-    Complex array (12, f). Row 0 is the angular frequency ω [rad/s]. Rows 1 to 8 are pairs of added
-    mass and damping: heave, surge, coupling of surge with pitch, pitch. Rows 9 to 11 are the
-    exciting forces per metre of elevation in heave, and in surge and pitch divided by ω².
+    Complex array (12, f).
+
+    - Row 0 is the angular frequency ω [rad/s].
+    - Rows 1 to 8 are pairs of added mass and damping for heave, surge, the coupling of surge with
+      pitch, and pitch.
+    - Row 9 is the exciting force in heave, per metre of wave elevation.
+    - Rows 10 and 11 are the exciting force in surge and the exciting moment in pitch, per metre of
+      wave elevation, each divided by ω².
 
     Raises
     ------

@@ -57,9 +57,9 @@ class FatigueCurve:
     Attributes
     ----------
     slope, logarithm : exponent m, and log10 of K at zero mean tension
-    by_mean : decrease of log10 K for a mean tension equal to the breaking load
-    range : meaning of R: range of `stress` in the steel [MPa], or range of tension as a `share` of
-        the breaking load
+    by_mean : decrease of log10 K if the mean tension rises from zero to the breaking load
+    range : quantity R: ``stress`` for the range of the stress in the steel [MPa], ``share`` for the
+        range of the tension divided by the breaking load
     source : publication that gives the curve
     """
 
@@ -90,11 +90,11 @@ CURVES = {
 }
 """Published curves by name.
 
-The curves of DNV and API are two standard deviations below the mean of the tests; their constants
+The curves of DNV and API are two standard deviations below the mean of the tests. Their constants
 are from secondary texts, since the standards themselves were not available. The curves of `_SOTS`
-are published with the amplitude of a cycle that breaks the part at once: 1.5, 2.25, 1.7 and 2.4
-times the breaking load, which is half of the range used here. The distance of these curves from the
-mean is not stated.
+are published with the load amplitude at which one cycle breaks the part: 1.5, 2.25, 1.7 and 2.4
+times the breaking load. The curves here use the range, which is twice the amplitude. The source
+does not state the distance of the `_SOTS` curves from the mean.
 """
 
 

@@ -56,9 +56,9 @@ class LumpedLine:
     tension, stiffness : (n-1,) tension of the springs [N], and their stiffness dT/d(length) [N/m]
     span : (n-1,) stretched lengths of the springs [m]
     current : (n, 3) current at the nodes [m/s]
-    piece_spring, piece_below : (pieces,) indices of each piece's first and second spring. A piece
-        of the top float has the first spring below the float, a piece on the seabed has -1, and a
-        piece with one spring has this spring twice
+    piece_spring, piece_below : (pieces,) indices of the first and the second spring of each piece.
+        Both are equal for a piece with one spring. For a piece of the top float, the first is the
+        spring below the float; for a piece on the seabed, it is -1
     piece_node : (pieces,) node at the upper end of each piece; -1 on the seabed
     top_pieces : number of pieces of the top float, with the pieces that the float carries
     inextensible : labels of cables with unknown stiffness
@@ -226,7 +226,7 @@ def _length_of(component: Component) -> float:
 def _figures_of(component: Component, length: float) -> dict[str, float]:
     """Return the masses of a component [kg], or for a flexible component per metre [kg/m].
 
-    An unknown mass follows from the net buoyancy and the displacement for its size.
+    If the mass is unknown, it is computed from the net buoyancy and the displaced volume.
     """
     water = REFERENCE_DENSITY * _volume(component, length)
     mass = mass_in_air(component)

@@ -39,10 +39,11 @@ _BY_HEAVE = {
     "panels": ((0.54, 0.9), (0.7, 1.05)),
     "follows": ((0.44, 0.7), (0.6, 0.9)),
 }
-"""Bands in low and in high seas for each method of computing heave. The bands enclose the observed
-ratios of computed to measured tension. For `filtered`, these ratios are 1.04 to 1.71 in low seas
-and 0.93 to 1.34 in high seas. For `panels`, they are 1.13 to 1.81 and 0.96 to 1.40. For `follows`,
-they are 1.44 to 2.24 and 1.12 to 1.66.
+"""Range of the ratio of measured to computed tension, for each method of computing heave: in low
+seas, then in high seas. The ranges enclose all observations. The inverse ratio, computed to
+measured tension, was observed as follows. Heave `filtered`: 1.04 to 1.71 in low seas, 0.93 to 1.34
+in high seas. Heave `panels`: 1.13 to 1.81 in low seas, 0.96 to 1.40 in high seas. Heave `follows`:
+1.44 to 2.24 in low seas, 1.12 to 1.66 in high seas.
 """
 
 

@@ -138,10 +138,10 @@ class _Afloat(NamedTuple):
     ----------
     held : (f, 4, 4) stiffness
     pushed : (f, 4) exciting force per metre of wave elevation
-    ways : (p, 3, 4) motion of p points with drag, per unit of each degree of freedom
+    ways : (p, 3, 4) motion of the p points where drag acts, per unit of each degree of freedom
     water : (f, p, 3) velocity of the water at these points
-    turning : factor of the rotational drag on the bottom
-    slope : (f,) slope of the waves, for the rotational drag
+    turning : coefficient of the drag on the bottom against rotation
+    slope : (f,) slope of the waves at the bottom, for this drag
     """
 
     held: Complexes
@@ -343,7 +343,10 @@ FREQUENCIES_AT_ONCE = 16
 
 
 def _undamped(line: LumpedLine) -> tuple[Floats, Floats]:
-    """Return springs (n-1, 5) as in `MassChain`, and masses (n-1, 3, 3) of the nodes above them."""
+    """Return the springs (n-1, 5) of a line, and the masses (n-1, 3, 3) of its nodes.
+
+    The springs have the form of `MassChain`. Each mass is that of the node above the spring.
+    """
     eye, t, sideways = np.eye(3), line.tangent, line.tension / line.span
     outer = t[:, :, None] * t[:, None, :]
     mass = line.mass[:, None, None] * eye + line.added_across[:, None, None] * (eye - outer)
@@ -404,7 +407,10 @@ def _by_blocks(
     damping: Floats,
     push: Complexes,
 ) -> Complexes:
-    """Solve with NumPy alone, which takes eight times as long as `_by_sweep`."""
+    """Return the motion (f, n, 3) of the nodes, computed with NumPy alone.
+
+    The computation takes eight times as long as `_by_sweep`.
+    """
     (across, excess, *axis), masses = undamped[0].T, undamped[1]
     axial = np.einsum("an,bn->nab", axis, axis)
     springs = across[:, None, None] * np.eye(3) + excess[:, None, None] * axial
