@@ -1,8 +1,8 @@
 """Solution of a net of legs for many current profiles, with compiled code.
 
-Each search starts from the net in still water or, without equilibrium in still water, in the
-current of the file. If the search fails or the seabed is a depth grid, the profile is solved as in
-`calm run`.
+Each search starts from the equilibrium of the net in still water. If the net has no equilibrium in
+still water, the search starts from the equilibrium in the current of the file. If the search fails
+or the seabed is a depth grid, the profile is solved as in `calm run`.
 """
 
 from concurrent.futures import ThreadPoolExecutor
@@ -52,10 +52,10 @@ class NetRows(NamedTuple):
 
     Attributes
     ----------
-    pieces : (n, p, 12) position [m] and force [N] at the upper end of each piece, then at the lower
-        end
-    clamps : (n, c, 7) position [m], sum of the forces above and below the clamp, and the larger of
-        the two [N]
+    pieces : (n, p, 12) position (3) [m] and force (3) [N] at the upper end of each piece, followed
+        by position and force at the lower end
+    clamps : (n, c, 7) position (3) of each clamp [m], sum of the forces above and below the clamp
+        (3) [N], and larger of the tensions above and below the clamp [N]
     shares : (n, l) used fraction of the buoyancy of the float at the top of each leg
     """
 
@@ -69,11 +69,13 @@ class NetArrays(NamedTuple):
 
     Attributes
     ----------
-    on, still : work arrays for a profile, and the water without current
-    start, slopes, scale : unknowns of the net at the starting point, Jacobian and scales
+    on : work arrays for the levels of a profile
+    still : water without current
+    start : values of the unknowns at the starting point
+    slopes, scale : Jacobian of the net at the starting point, and scales of the unknowns
     x : work array for the unknowns
-    piece, clamp : first row in `NetRows` of the pieces and the clamps of each leg
-    weight : anchor weight of each leg [N]; inf without an anchor
+    piece, clamp : numbers of the first piece and of the first clamp of each leg, as in `NetRows`
+    weight : anchor weight of each leg [N]; inf for a leg without an anchor
     """
 
     on: solving.ProfileLevels
@@ -248,11 +250,10 @@ class NetProfiles:
     def solve(
         self, current: tuple[Floats, ...], status: NDArray[np.int8], workers: int
     ) -> dict[str, Floats]:
-        """Solve the profiles with status 0; set their status, and return the result columns by
-        name.
+        """Solve the profiles with status 0, update `status`, and return the result columns by name.
 
-        The current has the depths (1 or n, k) of levels [m], and u, v, w (n, k) [m/s]. The `status`
-        (n,) of each profile is an index in `STATUSES`.
+        `current` consists of four arrays: level depths (1 or n, k) [m], and u, v and w (n, k)
+        [m/s]. `status` (n,) has an index in `STATUSES` for each profile.
         """
         count, pieces = len(status), self.net.file.pieces
         shapes = (len(pieces), 12), (len(clamps_down(pieces)), 7), (len(self.net.legs),)

@@ -70,7 +70,8 @@ def resolved_input(
 def with_input(text: str) -> Attributes:
     """Return the result attributes for the input `text`, with a placeholder for the hash.
 
-    The hash replaces the placeholder after the measured values are read; both have the same length.
+    The placeholder is as long as the hash. The hash replaces the placeholder after the measured
+    values are read.
     """
     return {RESOLVED: text, **InputHash(text).attributes()}
 

@@ -56,16 +56,22 @@ NO_CURRENT, LEVELS_COINCIDE, LIES_ON_SEABED, LACKS_ROOM = range(100, 104)
 SLOPE_STEP = 0.001
 """Change in a current component for the finite-difference slopes [m/s]."""
 NUDGE = 1e-4
-"""Change in the unknown of a line for the finite-difference slopes, as a fraction of the range of
-the unknown.
+"""Change in the unknown of the search for the finite-difference slopes.
+
+The change is a fraction of the range of the unknown.
 """
 
 
 class Results(NamedTuple):
-    """Results of n profiles: pieces (n, 6, p), clamps (n, 5, m) and ends (n, 6).
+    """Results of n profiles for a line with p pieces and m clamps.
 
-    `slopes` (n, m + p, 2 k) are the derivatives of the depths of clamps and pieces with respect to
-    u and v at each level [s]. The shape (n, 0, 0) omits the derivatives.
+    Attributes
+    ----------
+    pieces : (n, 6, p) the six quantities `OF_PIECE` of each piece
+    clamps : (n, 5, m) the five quantities `OF_CLAMP` of each clamp
+    ends : (n, 6) the quantities `OF_ENDS`
+    slopes : (n, m + p, 2 k) derivatives of the depths of clamps and pieces with respect to u and v
+        at each level [s]; (n, 0, 0) if no derivatives are required
     """
 
     pieces: Floats
@@ -79,9 +85,10 @@ class ProfileLevels(NamedTuple):
 
     Attributes
     ----------
-    read, joined : levels of the profile, and all levels after the merge (see `lay_profile`)
+    read : levels of the profile
+    joined : levels of the profile merged with the fixed levels, see `lay_profile`
     levels, intervals, bends : as in `Sea`
-    fixed : (f, 4) levels merged with every profile: depth, additional u and v, density
+    fixed : (f, 4) levels of the mooring's water: depth, u and v added to the profile, density
     """
 
     read: Floats
@@ -114,8 +121,8 @@ class ProfileArrays(NamedTuple):
     ----------
     on : work arrays for the levels of a profile
     may_lie : (p,) whether each piece may lie on the seabed in a sub-surface mooring
-    depths : (3, m + p) depths of clamps and pieces, slopes of these depths with respect to the
-        searched unknown, and depths in a changed current
+    depths : (3, m + p) work array for `measure_slopes`: depths of clamps and pieces, derivatives of
+        these depths with respect to the unknown of the search, and depths in a changed current
     """
 
     on: ProfileLevels
@@ -188,7 +195,10 @@ def sea_of(
 
 
 def in_current(problem: LineProblem, on: ProfileLevels, sea: Sea) -> LineProblem:
-    """Return a copy of a problem in the water `sea` of the profile whose levels are in `on`."""
+    """Return a copy of a problem in the water `sea` of a profile.
+
+    `on` has the levels of the profile.
+    """
     given = problem.limits
     moving = False
     for k in range(len(sea.intervals) - 1):
@@ -288,9 +298,9 @@ def measure_slopes(
 ) -> None:
     """Write the derivatives of the depths with respect to the current components to row `case`.
 
-    The derivatives are finite differences with the same segments. The implicit function theorem
-    gives the change of the unknown that the search solves for. A line with several floats at the
-    surface is solved again for each component.
+    The derivatives are finite differences. Shapes with and without the change in current have the
+    same segments. The search is not repeated: the implicit function theorem gives the change of its
+    unknown. Only a line with several floats at the surface is solved again for each component.
     """
     found, row = problem.work.found, slopes[case]
     unknown = Unknown(
@@ -333,8 +343,8 @@ def measure_slopes(
 def depths_of(problem: LineProblem, referee: Referee, marched: bool, depths: Floats) -> None:
     """Write the depths of clamps and pieces to `depths` (m + p,).
 
-    If `marched` is set, the depths are taken from the last march, otherwise from the extrapolated
-    shape.
+    If `marched` is set, the depths are those of the last integration along the line, otherwise
+    those of the extrapolated shape.
     """
     record, work = problem.work.records[FINE], problem.work
     nodes = int(work.left[MARCHED] if marched else work.found[NODES])
@@ -435,13 +445,13 @@ def between(table: Floats, count: int, k: int, depth: float, c: int) -> float:
 def lay_profile(
     read: Floats, count: int, fixed: Floats, levels: Any, intervals: Any, joined: Floats
 ) -> int:
-    """Merge a profile with the fixed levels, write levels and intervals as in `Sea`, and count the
-    levels.
+    """Merge a profile with the fixed levels, and return the number of merged levels.
 
     Parameters
     ----------
     read : depth, u, v, w of the profile's levels
-    fixed : (f, 4) depth, addition to u and to v, density
+    fixed : (f, 4) depth, u and v added to the profile, and density of each fixed level
+    levels, intervals : receive the merged levels and the intervals between them, as in `Sea`
     joined : receives depth, u, v, w, density of the merged levels
     """
     total = i = j = 0
@@ -481,8 +491,10 @@ def lay_profile(
 
 
 def value_at(table: Floats, count: int, k: int, depth: float, c: int) -> float:
-    """Return column `c` of a table at a depth, as `between` does, but exactly if level `k` is at
-    this depth.
+    """Return column `c` of a table at a depth.
+
+    If the depth is that of level `k`, the value in the table is returned, otherwise the result of
+    `between`.
     """
     if k < count and table[k, 0] == depth:
         return float(table[k, c])

@@ -41,7 +41,8 @@ class Adjustment:
     Attributes
     ----------
     text : name of the parameter, e.g. ``top float.buoyancy``
-    file, parts : the mooring and the changed parts, in their original state
+    file : the original mooring
+    parts : the original parts to which the parameter belongs
     dimension : a key of `calm.units.DIMENSIONS`
     now : value before the change
     range : default smallest and largest value
@@ -182,8 +183,9 @@ _NUMBERED = re.compile(r"(.+) \d+")
 
 
 def _without_numbers(once: Sequence[Piece], item: Sequence[Piece]) -> list[Piece]:
-    """Return the pieces of one copy of an item, with numbers removed from labels that differ only
-    by their numbers in the item.
+    """Return the pieces `once` of one copy of an item, without the numbers of repeated labels.
+
+    For example, ``glass 1`` becomes ``glass`` if the item also has ``glass 2``.
     """
     stems = Counter(
         found[1] for part in parts_of(item) if (found := _NUMBERED.fullmatch(part.label))

@@ -50,8 +50,10 @@ and index of the clamp or -1.
 """
 
 Varied = Callable[[int, Line], Floats]
-"""Function of the number of a leg and a new line for this leg, which returns the three values of
-`Attribution`.
+"""Function that solves the mooring with a slightly changed line in one leg.
+
+The arguments are the number of the leg and the changed line. The result (3,) is the depth, the
+excursion and the used buoyancy, as in `Attribution`.
 """
 
 
@@ -66,8 +68,8 @@ class Attribution:
     ----------
     parts : leg, piece and clamp on which each drag acts; the clamp is -1 for the piece itself
     start : (3,) values without drag, or with the smallest drag
-    shares : (p, 3) contributions, which add up to the total change
-    miss : (3,) relative error of these sums before scaling to the total change
+    shares : (p, 3) contributions, scaled so that they add up to the total change
+    miss : (3,) relative error of the sum of the contributions before the scaling
     """
 
     parts: list[SolverPart]
@@ -87,10 +89,10 @@ def attribute(
     Parameters
     ----------
     lines : lines of the legs, or a single line
-    near : function that solves these lines and returns a second function, which returns the (3,)
-        values at the point for a variant of one line
-    start : (3,) values without drag; None if the shape without drag is not unique, so that the
-        shares begin at `LEAST_DRAG`
+    near : function that solves these lines, and returns a function `Varied` for variants of the
+        lines
+    start : (3,) values without drag. If the shape without drag is not unique, `start` is None, and
+        the integral over the drag begins at `LEAST_DRAG`
     whole : (3,) values with full drag
 
     Raises

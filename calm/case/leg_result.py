@@ -70,7 +70,7 @@ class LegResult:
 
     @property
     def iterations(self) -> int:
-        """Number of marches of the solver."""
+        """Number of integrations along the line that the solver needed."""
         return self.solution.marches
 
     @property

@@ -163,10 +163,10 @@ def _place_of(file: MooringFile, label: str) -> Location:
 
 
 def below_the_seabed(file: MooringFile, solution: Solution, depth: float) -> Floats:
-    """Return the distance of each node below the seabed, shape (k + 1,) [m]; NaN outside the depth
-    grid.
+    """Return the distance (k + 1,) of each node below the seabed [m].
 
-    `depth` is the water depth at the anchor of the leg, or at the origin without an anchor [m].
+    The distance is NaN outside the depth grid. `depth` is the water depth [m] at the anchor of the
+    leg. For a leg without an anchor, it is the water depth at the origin.
     """
     seabed, place = file.environment.seabed, solution.position
     assert seabed is not None

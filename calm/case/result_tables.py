@@ -855,7 +855,7 @@ class WithClamps(Protocol):
 
 
 def rows_by_place(result: WithClamps) -> dict[Place, ComponentRow | ClampRow]:
-    """Map the place of each piece and clamp in the file to its row in the result."""
+    """Return the result rows of all pieces and clamps, by their places in the file."""
     return {row.place: row for row in (*result.components, *result.clamps)}
 
 

@@ -24,8 +24,10 @@ SOLVES = 60.0
 """Approximate number of equilibria per answer; each value tried takes three equilibria."""
 
 _EXACT = 1e-7
-"""Error at which an `=` target counts as met, as a fraction of the limit or of the initial distance
-to the limit.
+"""Relative error at which a target with `=` counts as met.
+
+The error is relative to the larger of two values: the limit, and the difference between the
+original value and the limit.
 """
 
 

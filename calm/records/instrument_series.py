@@ -272,7 +272,7 @@ PRESSURE = (
     ("sea_water_pressure_due_to_sea_water", "sea_water_pressure"),
     ("PRES_REL", "PRES", "pressure", "pres"),
 )
-"""Standard and usual names of quantities used to compute others."""
+"""Standard names and usual names of pressure variables."""
 PASCALS_PER_DBAR = 1e4
 _LATITUDE = 45.0  # default; it changes the pressure at a depth by 0.3 % at most
 _FEWEST = 6  # a series of zeros alone is a fault from this length on
@@ -449,9 +449,13 @@ def _decibars(variable: xr.DataArray, values: Floats) -> Floats:
 def named(dataset: xr.Dataset, sought: Sequence[str], usual: Sequence[str]) -> list[str]:
     """Return the names of the variables of a quantity.
 
-    Variables with the first standard name of `sought` in the dataset take precedence, else names in
-    `usual` count. Of several variables with one standard name, those with a usual name are
-    returned. Raise UnreadableError if there are none, or if a usual name belongs to another
+    `sought` lists standard names, the preferred name first. The variables with the first standard
+    name that occurs in the dataset are returned. If no standard name occurs, the variables with the
+    names in `usual` are returned. If several variables have the same standard name, only those with
+    a name in `usual` are returned.
+
+    Raise UnreadableError if several variables have the same standard name, and none has a name in
+    `usual`. Raise UnreadableError also if the first variable found by a usual name has another
     standard name.
     """
     there = _standard(dataset, sought)
@@ -559,7 +563,8 @@ def card_of(
     Parameters
     ----------
     source : name of the file
-    taken : names of the variables by role, in the order of the readings
+    taken : names of the variables by role, such as temperature, in the order of `found.values`
+    found : values of these variables
     """
     summaries = {}
     for (meaning, name), values in zip(taken.items(), found.values, strict=True):

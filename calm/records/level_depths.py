@@ -37,12 +37,15 @@ _STANDARD_DEPTH = "depth"
 class LevelDepths:
     """Levels of a current at depths ``start + factor * variable``, positive down [m].
 
+    If `instrument` is set, the depth of the instrument is added.
+
     Attributes
     ----------
     variable : level variable; its dimensions are dimensions of the velocity
     factor : signed factor to metres; negative if values increase upwards
     start : depth at which the values are zero [m]
-    instrument : depth variable of an instrument, and its factor to metres; this depth is added
+    instrument : depth variable of an instrument, and the factor to metres; None for levels that are
+        not relative to an instrument
     """
 
     variable: xr.DataArray

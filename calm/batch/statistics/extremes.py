@@ -59,8 +59,8 @@ class Level:
 
     Attributes
     ----------
-    period : return period T [years]. The annual maximum (GEV) exceeds the level in one of T years,
-        a peak (POT) once in T years, on average
+    period : return period T [years]. On average, one in T annual maxima exceeds the level (GEV), or
+        one peak exceeds the level in T years (POT)
     low, high : ends of the confidence interval; None if the data do not determine an end
     """
 
@@ -106,8 +106,9 @@ def return_levels(
 ) -> tuple[Fit | LevelsRefused, Fit | LevelsRefused]:
     """Compute return levels with 95 % intervals, first by GEV and then by POT.
 
-    A method without levels returns the reason. Levels require that all profiles with a current are
-    solved, except in weak currents (`calm.batch.statuses.IN_WEAK_CURRENT`).
+    If a method has no return levels, its item is the reason. Return levels require a solution for
+    every profile with a current. Profiles in weak currents (`calm.batch.statuses.IN_WEAK_CURRENT`)
+    may be unsolved.
 
     Parameters
     ----------
@@ -249,8 +250,8 @@ def _fit_with_levels(
 
 
 WHOLE = 0.9
-"""Smallest fraction of profiles in a year that counts as whole. Choice of CALM: five missing weeks
-seldom hide the annual maximum, but a missing season may.
+"""Fraction of the profiles of a year that a complete year must have. Choice of CALM: five missing
+weeks seldom hide the annual maximum, but a missing season may.
 """
 
 YEAR = np.timedelta64(31_557_600, "s")
@@ -279,10 +280,10 @@ def median_step(time: Times) -> np.timedelta64:
 def annual_maxima(
     time: Times, values: Column, step: np.timedelta64
 ) -> tuple[NDArray[np.float64], int]:
-    """Return the maximum of every complete year, and the number of all years.
+    """Return the maximum of every complete year, and the number of complete and incomplete years.
 
-    Years of 365.25 days are counted from the first profile. A complete year has at least the
-    fraction `WHOLE` of the possible values.
+    Years of 365.25 days are counted from the first profile. In a complete year, at least the
+    fraction `WHOLE` of the time steps has a value.
     """
     years = int((time[-1] - time[0]) // YEAR) + 1
     starts = np.searchsorted(time, time[0] + np.arange(years + 1) * YEAR)

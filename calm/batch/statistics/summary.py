@@ -70,8 +70,8 @@ class Response:
     Attributes
     ----------
     distribution : distribution over the profiles; None if there are no values
-    begin, low, high : start, minimum and maximum of each time interval in the plot; minimum and
-        maximum are NaN without values
+    begin : start of each time interval in the plot
+    low, high : minimum and maximum in each interval; NaN if the interval has no values
     return_levels : return levels by GEV and by POT
     """
 
