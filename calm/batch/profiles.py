@@ -136,7 +136,7 @@ class Profiles(Columnar):
         """Return a data frame with one row per profile, and one column per quantity and label.
 
         An example of a column is ``frame["tilt", "adcp"]``. Values of the whole line have the label
-        0, or the label of the leg.
+        0. In a net, the label is the number of the leg, counted from 0.
         """
         import pandas
 
@@ -320,7 +320,7 @@ class Batch:
 
     @cached_property
     def _starts(self) -> Floats:
-        """Starting values of the search, which are the same for all profiles of a line."""
+        """Starting values of the search; all profiles of a line have the same starting values."""
         leg = self.mooring.moored
         none = np.zeros((0, 1))
         current = np.zeros((1, 1)), none, none, none

@@ -1,7 +1,7 @@
 """Solution of successive profiles with the search of `calm.solve`, and calculation of the results.
 
-The tolerance is about a millionth of the depth. The results are extrapolated from two solutions,
-one with segments of half the length.
+The tolerance is about a millionth of the depth. The results are extrapolated from two solutions.
+The segments of the second solution have half the length.
 """
 
 from math import atan2, inf, isfinite, nan, pi, sqrt
@@ -407,9 +407,10 @@ def used_buoyancy(problem: LineProblem) -> float:
 
 
 def read_profile(depth: Floats, u: Floats, v: Floats, w: Floats, read: Floats) -> int:
-    """Copy the valid levels of a profile at or below the surface, sorted by depth.
+    """Copy the valid levels of a profile to `read`, sorted by depth.
 
-    Return the number of levels, or −1 if two levels have the same depth.
+    Levels above the surface are omitted. Return the number of copied levels, or −1 if two levels
+    have the same depth.
     """
     count = 0
     for j in range(depth.size):

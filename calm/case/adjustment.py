@@ -47,7 +47,7 @@ class Adjustment:
     now : value before the change
     range : default smallest and largest value
     to : function that returns the mooring for a new value
-    bounded : whether the user may not go below the lower end of `range`
+    bounded : whether the lower end of `range` is the smallest value that the user may set
     whole : whether the value must be a whole number
     """
 

@@ -1,7 +1,7 @@
 """Attribution of a mooring's knockdown and excursion to the drag of each part.
 
-Let y(λ₁ … λ_p) be the quantity to explain, such as the knockdown, of the line with drag i
-multiplied by λ_i. The share of drag i in y is its Aumann–Shapley value,
+Let y be the quantity to explain, such as the knockdown. If the drag of part i is multiplied by λ_i,
+the quantity is y(λ₁ … λ_p). The share of drag i in y is its Aumann–Shapley value,
 
     share_i = ∫₀¹ ∂y/∂λ_i (s, …, s) ds
 
@@ -154,8 +154,9 @@ def _integral(
     least: float,
     stages: int,
 ) -> Floats:
-    """Compute the contributions (p, 3), ∫ ∂y/∂λ ds from `least` to 1, with s = t² and ∂y/∂λ =
-    (∂y/∂ln λ)/s.
+    """Compute the contributions (p, 3), which are the integrals ∫ ∂y/∂λ ds from `least` to 1.
+
+    The variable of integration is t, with s = t². The derivative ∂y/∂λ is (∂y/∂ln λ)/s.
     """
     abscissae, weights = np.polynomial.legendre.leggauss(stages)
     low = np.sqrt(least)

@@ -1,7 +1,7 @@
 """Definition of a result column: title, unit, description, computation and outputs.
 
-`calm.case.result_tables` has one entry for each column, which appears in every output named in the
-entry.
+`calm.case.result_tables` has one entry for each column. The entry names the outputs in which the
+column appears.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Arrays of values on a solved line, which become the columns of pieces, clamps and nodes.
+"""Arrays of values on a solved line, for the result tables of pieces, clamps and nodes.
 
 Pieces are in the order of the file, without the anchor.
 """
@@ -98,8 +98,8 @@ class LineFigures:
         """(n,) angle between the vertical and the straight line through the ends of each piece
         [degrees].
 
-        A piece without length has the angle of the tension. The pieces at the head of the line form
-        one rod.
+        The tilt of a piece without length is the angle of the tension. Rigid pieces at the head of
+        the line form one rod and have the same tilt.
         """
         solution, chord = self.solution, self.top - self.bottom
         pull = solution.force[self.upper] + solution.force[self.lower]
@@ -204,7 +204,11 @@ class NodeFigures:
 
     @property
     def tilt(self) -> Floats:
-        """(k,) angle of the segment that ends at the node, from the vertical [degrees]."""
+        """(k,) angle from the vertical of the segment between each node and the node before it
+        [degrees].
+
+        The first node has the angle of the first segment.
+        """
         chord = self.solution.position[:-1] - self.solution.position[1:]
         if self.solution.line.towed:
             chord = -chord

@@ -554,7 +554,8 @@ class Shape:
     ----------
     depth, x, y : (k,) depth, east and north [m]
     tension : (k,) tension [N]
-    tilt : (k,) angle from the vertical of the segment that ends at the node [degrees]
+    tilt : (k,) angle from the vertical of the segment between each node and the node before it
+        [degrees]
     """
 
     prefix: ClassVar[str] = "shape_"

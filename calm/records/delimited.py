@@ -32,7 +32,7 @@ GAPS = frozenset({"", "nan", "na", "n/a", "-", "none", "null"})
 """Lower-case cell texts that mark a missing value."""
 
 COMMENT = re.compile(rb"(?m)^([ \t]*#).*")
-"""A comment; its text may have any encoding."""
+"""Pattern of a comment in the bytes of a file. The encoding of comments does not matter."""
 
 NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 _SAMPLE = 200  # lines from which the dialect is found

@@ -65,11 +65,12 @@ def choose_column(
 ) -> GridColumn:
     """Select the nearest grid column with a current, or the only column.
 
-    `velocity` names two variables, and `time` the dimension of the times. `wanted` is latitude and
-    longitude, needed to choose from several columns.
+    `velocity` has the names of the two velocity variables, and `time` is the name of the time
+    dimension. `wanted` is the position (latitude, longitude), required if the dataset has several
+    columns.
 
-    Raise UnreadableError if the position is missing or outside the grid, if no column nearby has a
-    current, or if the grid is staggered.
+    Raise UnreadableError if the position is missing or outside the grid, if no column near the
+    position has a current, or if the grid is staggered.
     """
     import xarray as xr
 

@@ -217,7 +217,7 @@ def _of_file(
 
 
 def with_one_card(series: Sequence[InstrumentSeries]) -> list[InstrumentSeries]:
-    """Return the series of a file, each with the same card, which covers all instruments."""
+    """Return the series of a file with a common card that covers all instruments."""
     cards = [*{id(one.card): one.card for one in series if one.card is not None}.values()]
     if len(cards) < 2:
         return [*series]

@@ -129,8 +129,8 @@ def choose_profiles(
 ) -> tuple[Index, tuple[str, ...]]:
     """Return the indices of the profiles to read, in order of time, and notices on the choice.
 
-    `times` (n,) are in file order. `period` is None for all times. Every n-th profile is read, with
-    n in `every`.
+    `times` (n,) are in file order. `period` is None for all times. If `every` is n, every n-th
+    profile is read.
 
     Raises
     ------

@@ -106,7 +106,7 @@ class SeaState:
     shortest: float | None = None
 
     def severity(self) -> tuple[float, float]:
-        """Return a key to sort seas by significant height, and seas of equal height by steepness."""
+        """Return a key to sort seas by height, and seas of equal height by steepness."""
         return self.significant_height, -self.peak_period
 
     @property

@@ -36,8 +36,8 @@ season.
 """
 
 LEAST_PEAKS = 30
-"""Number of independent peaks required for POT. Choice of CALM: the intervals hold for many peaks;
-with fewer peaks they contain the true level less often than stated.
+"""Number of independent peaks required for POT. Choice of CALM: confidence intervals from few peaks
+contain the true return level less often than stated.
 """
 
 THRESHOLDS = (99.0, 98.0, 97.0, 96.0, 95.0, 94.0, 93.0, 92.0, 91.0, 90.0)
@@ -80,7 +80,7 @@ class Fit:
     location, scale, shape : μ, σ and ξ; for POT, the location is the threshold
     count, rate : number of fitted maxima or peaks, in total and per year
     rules : description of the selection of maxima or peaks
-    levels : for the `PERIODS` that the record allows
+    levels : return levels for those `PERIODS` that the length of the record allows
     """
 
     method: str
@@ -259,9 +259,7 @@ YEAR = np.timedelta64(31_557_600, "s")
 
 
 def years_of(step: np.timedelta64, count: int) -> float:
-    """Return the time represented by `count` profiles, each of which represents one median step
-    [years].
-    """
+    """Return the time represented by `count` profiles [years]; a profile represents one `step`."""
     return count * float(step / YEAR)
 
 
@@ -300,7 +298,7 @@ def peaks_over(
 
     With N exceedances and the extremal index θ, the θN - 1 longest intervals between exceedances
     separate the clusters (Ferro and Segers 2003, eq. 6 and section 3). Exceedances in successive
-    time steps are never separated. An interval across a gap in the record counts in full.
+    time steps are never separated. The interval between two exceedances includes any gap between them.
     """
     over = np.flatnonzero(values > threshold)
     if len(over) < 2:

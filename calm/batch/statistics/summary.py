@@ -403,11 +403,10 @@ def distribution_of(values: Column, time: Times) -> Distribution | None:
 
 
 def envelope_of(values: Column, time: Times) -> tuple[Times, Column, Column]:
-    """Divide the record into `MOST_INTERVALS` intervals, and return their start times and extreme
-    values.
+    """Divide the record into `MOST_INTERVALS` intervals with equal numbers of profiles.
 
-    The intervals contain equal numbers of profiles. In a shorter record, each profile is an
-    interval.
+    If the record has fewer profiles, each profile is an interval. Return the start time, the
+    minimum and the maximum of each interval.
     """
     count = min(len(values), MOST_INTERVALS)
     begin = np.unique(np.linspace(0, len(values), count, endpoint=False).astype(np.int64))
