@@ -43,7 +43,7 @@ TOLERANCE = 1e-6
 BLOCK = 256
 """Number of profiles that a thread solves at a time."""
 SOLVE_ALONE = 1
-"""Outcome of a profile that has to be solved on its own, as in `calm run`."""
+"""Outcome of a profile that must be solved again, as in `calm run`."""
 Column = tuple[float, ...]
 
 
@@ -229,7 +229,7 @@ class NetProfiles:
     def slopes(self) -> tuple[Floats, Floats] | None:
         """Jacobian of the net at the starting point, and the scales of the unknowns.
 
-        The value is None if each profile must be solved on its own.
+        The value is None if each profile must be solved as in `calm run`.
         """
         if self.base is None or isinstance(self.net.file.environment.seabed, SeabedGrid):
             return None

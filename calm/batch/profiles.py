@@ -359,7 +359,7 @@ class Batch:
     ) -> Floats:
         """Solve profiles, and return the starting values of the search.
 
-        The starting values are `starts` or, if `starts` is None, they are computed.
+        If `starts` is None, the starting values are computed, otherwise they are `starts`.
         """
         line, water = leg.line, self.water
         depth, *parts = current

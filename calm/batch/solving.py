@@ -298,9 +298,9 @@ def measure_slopes(
 ) -> None:
     """Write the derivatives of the depths with respect to the current components to row `case`.
 
-    The derivatives are finite differences. Shapes with and without the change in current have the
-    same segments. The search is not repeated: the implicit function theorem gives the change of its
-    unknown. Only a line with several floats at the surface is solved again for each component.
+    The derivatives are finite differences between two shapes with the same segments. The implicit
+    function theorem gives the change in the unknown of the search, so that the search is not
+    repeated. Only a line with several floats at the surface is solved again for each component.
     """
     found, row = problem.work.found, slopes[case]
     unknown = Unknown(
@@ -494,7 +494,7 @@ def lay_profile(
 def value_at(table: Floats, count: int, k: int, depth: float, c: int) -> float:
     """Return column `c` of a table at a depth.
 
-    If the depth is that of level `k`, the value in the table is returned, otherwise the result of
+    If level `k` is at this depth, return the value in the table. Otherwise, interpolate with
     `between`.
     """
     if k < count and table[k, 0] == depth:

@@ -18,13 +18,13 @@ from calm.files.pieces import numbered, parts_of, placed
 from calm.units import DIMENSIONS, QuantityError, parse_quantity, with_unit
 
 MOST_BUOYANCY = 100.0
-"""Largest factor on the buoyancy of a float, unless the user gives a range."""
+"""Default upper limit for the buoyancy of a float, as a multiple of its present buoyancy."""
 MOST_LENGTH = 2.0
-"""Largest length of a piece, in water depths, unless the user gives a range."""
+"""Default upper limit for the length of a piece, as a multiple of the water depth."""
 LEAST_LENGTH = 0.01
 """Smallest length of a cable or chain [m]."""
 MOST_COUNT = 1000
-"""Largest count of a component, unless the user gives a range."""
+"""Default upper limit for the count of a component."""
 
 Parts = tuple[Piece | Clamp, ...]
 
@@ -117,8 +117,9 @@ def _buoyancy(text: str, file: MooringFile, parts: Parts) -> Adjustment:
 
 
 def _length(text: str, file: MooringFile, parts: Parts) -> Adjustment:
-    """Vary the unstretched length of a cable or chain [m]; clamps keep their distances from its
-    upper end.
+    """Vary the unstretched length of a cable or chain [m].
+
+    Clamps keep their distances from the upper end of the cable or chain.
     """
     pieces = [part for part in parts if isinstance(part, Piece)]
     if len(pieces) < len(parts) or not isinstance(pieces[0].component, Flexible):

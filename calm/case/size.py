@@ -21,7 +21,7 @@ MET, MET_ALREADY, NOT_MET = "met", "met-already", "not-met"
 _NOTHING = 1e-6
 """Relative change of the target quantity that is treated as no change."""
 SOLVES = 60.0
-"""Approximate number of equilibria per answer; each value tried takes three equilibria."""
+"""Approximate number of equilibria per sizing; each value of the parameter needs three."""
 
 _EXACT = 1e-7
 """Relative error at which a target with `=` counts as met.

@@ -41,7 +41,8 @@ class Contribution:
     cause : name of the input
     quantity : name of the quantity
     first : fraction of the variance that the input explains on its own
-    total : `first` and the fractions that the input explains in combination with other inputs
+    total : fraction of the variance that the input explains on its own and in combination with
+        other inputs
     """
 
     cause: str

@@ -43,8 +43,8 @@ def is_synthetic(component: Component) -> bool:
 def counted_working_load(component: Component) -> float | None:
     """Return the working load used to check a component [N], or None.
 
-    The result for a synthetic rope with a known breaking load is None, because the working load in
-    rope tables is for lifting.
+    For a synthetic rope with a known breaking load, the result is None. Working loads in rope
+    tables are for lifting and are not used.
     """
     if is_synthetic(component) and component.breaking_load is not None:
         return None
@@ -334,8 +334,8 @@ def _hull_unknown(result: _Measured, solution: Solution) -> Iterator[str]:
 def buoyancy_of_sea_water(leg: Leg) -> tuple[Piece | Clamp, str] | None:
     """Return the first float with too high a buoyancy in fresh water, and a warning; else None.
 
-    The buoyancy of a float in the catalogue is that in sea water. If the displaced volume of the
-    float is unknown, CALM does not reduce its buoyancy in fresh or brackish water.
+    Catalogue values of buoyancy are for sea water. If the displaced volume of a float is unknown,
+    CALM does not reduce the buoyancy of the float in fresh or brackish water.
     """
     density = float(np.max(leg.water.density))  # at the surface alone, water may be fresher
     if density >= BRACKISH:

@@ -489,7 +489,7 @@ class Readings:
     values : (n, k) values of each variable, in the units of the file
     dropped : (n, k) mask of readings rejected by a flag of any variable
     clock : name and unit of the time variable
-    flags : number of rejected readings by flag variable
+    flags : number of readings that each flag variable rejected
     """
 
     time: NDArray[np.datetime64]

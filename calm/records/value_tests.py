@@ -36,7 +36,7 @@ SECTOR = 40.0
 in tens of degrees.
 """
 UNCHANGED = 0.1
-"""Share of a record beyond which a series with a constant value is doubtful."""
+"""Fraction of a record. A constant value, or gaps, over a larger fraction are reported."""
 _FEWEST = 6  # least number of equal readings for a doubt
 _STRETCH = 24  # readings of a repeated stretch
 _SLOWEST = np.timedelta64(3, "h")  # at longer steps, a tide looks like two interleaved series

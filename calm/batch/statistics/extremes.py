@@ -106,9 +106,9 @@ def return_levels(
 ) -> tuple[Fit | LevelsRefused, Fit | LevelsRefused]:
     """Compute return levels with 95 % intervals, first by GEV and then by POT.
 
-    If a method has no return levels, its item is the reason. Return levels require a solution for
-    every profile with a current. Profiles in weak currents (`calm.batch.statuses.IN_WEAK_CURRENT`)
-    may be unsolved.
+    Return a `Fit` for each method, or the reason why the method has no return levels. Return levels
+    require a solution for every profile with a current, except for profiles in weak currents
+    (`calm.batch.statuses.IN_WEAK_CURRENT`).
 
     Parameters
     ----------
@@ -298,7 +298,7 @@ def peaks_over(
 
     With N exceedances and the extremal index θ, the θN - 1 longest intervals between exceedances
     separate the clusters (Ferro and Segers 2003, eq. 6 and section 3). Exceedances in successive
-    time steps are never separated. The interval between two exceedances includes any gap between them.
+    time steps are never separated. Gaps in the record count as parts of the intervals.
     """
     over = np.flatnonzero(values > threshold)
     if len(over) < 2:

@@ -85,7 +85,7 @@ class Tail:
         return _end(excess, estimate, -spread), _end(excess, estimate, spread)
 
     def _profile(self, level: float, growth: float) -> float:
-        """Return the least negative log-likelihood of all distributions with a given return level."""
+        """Return the least negative log-likelihood of all distributions with a return level."""
         if not self.maxima:
 
             def of_shape(free: Floats) -> float:
