@@ -165,8 +165,8 @@ class ClampFigures:
     def tilt(self) -> Floats:
         """(m,) tilt [degrees].
 
-        A clamp on a rigid piece has the tilt of the piece. A clamp on a cable or chain has the angle
-        of the mean of the tensions above and below the clamp.
+        A clamp on a rigid piece has the tilt of the piece. A clamp on a cable or chain has the
+        angle of the mean tension above and below the clamp.
         """
         solution, elements = self.solution, self._elements
         pull = solution.force[elements] + solution.force[elements + 1]
