@@ -60,7 +60,7 @@ class BlockTask(NamedTuple):
     ----------
     layout, block : see `calm.dataset.netcdf.packed`
     time : (n,) times of the profiles
-    levels : currents, see `calm.records.record.Record.profiles`
+    levels : depths and currents, as returned by `calm.records.record.Record.profiles`
     """
 
     layout: ResultLayout

@@ -193,7 +193,7 @@ class NetProfiles:
     net: Design
 
     def water(self, depth: Column, u: Column, v: Column, w: Column) -> Water:
-        """Return the water of the net, with its current replaced by the given profile."""
+        """Return the water of the net; the given profile replaces the current of the file."""
         environment = replace(self.net.file.environment, current=CurrentTable(depth, u, v, w))
         return self.net.water_of(environment)
 
@@ -218,8 +218,8 @@ class NetProfiles:
     def base(self) -> NetSolution | None:
         """Solution from which the search starts.
 
-        This is the solution in still water or, if there is none, the solution in the current of the
-        file.
+        If the net has an equilibrium in still water, the search starts from this equilibrium,
+        otherwise from the equilibrium in the current of the file. None if neither exists.
         """
         with suppress(NoEquilibrium):
             return self.still or self.net.standing

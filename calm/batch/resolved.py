@@ -15,7 +15,7 @@ from calm.dataset.netcdf import Attributes
 from calm.version import __version__
 
 RESOLVED, HASH = "input_resolved", "input_sha256"
-"""Names of the attributes of a result file: its input as JSON, and the SHA-256 of the input and the
+"""Names of two attributes of a result file: the input as JSON, and the SHA-256 hash of input and
 measurements.
 """
 

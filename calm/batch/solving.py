@@ -177,9 +177,10 @@ def solve_rows(
 def sea_of(
     on: ProfileLevels, depth: Floats, u: Floats, v: Floats, w: Floats, case: int, still: Sea
 ) -> tuple[int, Sea]:
-    """Return the outcome and the water of a profile: FOUND, NO_CURRENT or LEVELS_COINCIDE.
+    """Return the outcome and the water of a profile.
 
-    Gravity and viscosity are those of the water `still`. For the currents, see `solve_rows`.
+    The outcome is FOUND, NO_CURRENT or LEVELS_COINCIDE. Gravity and viscosity are those of the
+    water `still`. For `depth`, `u`, `v` and `w`, see `solve_rows`.
     """
     at = depth[case if depth.shape[0] > 1 else 0]
     found, ending, total = read_profile(at, u[case], v[case], w[case], on.read), FOUND, 0
@@ -275,7 +276,7 @@ def measure(
 def lean_of_head(
     problem: LineProblem, referee: Referee, results: Results, case: int, head: int
 ) -> None:
-    """Set the tilt of the pieces at the head of the line, which form one rod."""
+    """Set the tilt of the pieces at the head of the line; together, these pieces form one rod."""
     fine = problem.work.records[FINE]
     end = referee.last[head - 1]
     dx, dy, dz = fine[0][0] - fine[0][end], fine[1][0] - fine[1][end], fine[2][0] - fine[2][end]

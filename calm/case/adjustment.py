@@ -245,10 +245,10 @@ def parse_change(text: str, file: MooringFile) -> Adjustment:
 
 
 def parse_range(texts: tuple[str, str] | None, change: Adjustment) -> tuple[float, float]:
-    """Parse the lower and upper end of a range, each with its unit.
+    """Parse the lower and upper end of a range, each with a unit.
 
-    The default is the range of the parameter. Raises UsageError if an end is not allowed or the
-    ends are in the wrong order.
+    If `texts` is None, the default range of the parameter is returned. Raises UsageError if an end
+    is not allowed, or if the ends are in the wrong order.
     """
     if texts is None:
         low, high = change.range

@@ -39,8 +39,7 @@ _STEP = 2e-4
 of the solver.
 """
 SETTINGS = Settings(angle_step=radians(4.0), tolerance=1e-10)
-"""Coarse solver settings, which suffice because the contributions are scaled to the total in the
-end.
+"""Coarse solver settings. They suffice, because the contributions are finally scaled to the total.
 """
 
 

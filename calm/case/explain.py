@@ -70,9 +70,9 @@ class Explanation:
 
     Attributes
     ----------
-    quantities : names of the explained quantities, which are columns of `causes`: knockdown and
-        excursion, or excursion and used buoyancy for a leg with a surface float, or only excursion
-        if the knockdown is undefined
+    quantities : names of the explained columns of `causes`. These are excursion and used buoyancy
+        for a leg with a surface float. For other legs, they are knockdown and excursion, or
+        excursion alone if the knockdown is undefined
     figures : values of the original mooring
     without_drag : contribution to each quantity that is not caused by drag
     causes : contributions of the drags; None if unknown

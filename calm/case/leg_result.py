@@ -130,9 +130,10 @@ class LegResult:
 
     @cached_property
     def components(self) -> Components:
-        """Pieces in line order, which is from the ship down for a tow.
+        """Pieces in line order; the pieces of a tow are listed from the ship down.
 
-        The last piece of a leg without an anchor is a stand-in, whose values have no meaning.
+        The last piece of a leg without an anchor is a stand-in. The values of a stand-in have no
+        meaning.
         """
         pieces = self.file.pieces
         if self.towed:

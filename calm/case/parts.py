@@ -67,7 +67,7 @@ def _listed(labels: Sequence[str]) -> str:
 def naming_the_piece(pieces: Sequence[Piece], *, towed: bool = False) -> Iterator[None]:
     """Context manager that adds the label of the affected piece to errors raised by the solver.
 
-    `towed` is set for a tow, whose pieces the solver numbers from the lower end.
+    `towed` is set for a tow, because the solver numbers the pieces of a tow from the lower end.
     """
     try:
         yield

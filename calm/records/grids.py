@@ -274,7 +274,7 @@ class SeabedGrid:
     ----------
     latitude, longitude : origin of the mooring coordinates [degrees]
     reach : half the side length of the square of depths to read [m]; the origin is its centre
-    east, north : distances of the point from the origin [m]
+    east, north : distances of the point to the east and north of the origin [m]
     """
 
     path: str = field(compare=False)
@@ -307,11 +307,11 @@ class SeabedGrid:
         return grid
 
     def at(self, east: float, north: float) -> SeabedGrid:
-        """Return the grid about another point.
+        """Return a copy of the grid for another point.
 
         Parameters
         ----------
-        east, north : distances of the other point east and north of this point [m]
+        east, north : distances of the new point to the east and north of the present point [m]
         """
         return replace(self, east=self.east + east, north=self.north + north)
 

@@ -40,7 +40,7 @@ _ENDINGS = (".nc", ".cnv", ".use", ".microcat", ".rcm")
 _SAID = f"{', '.join(_ENDINGS[:-1])} or {_ENDINGS[-1]}"
 
 INTERPOLATED = 8
-"""Quality flag of interpolated values, which CALM rejects as measurements."""
+"""Quality flag of interpolated values; CALM does not accept these values as measurements."""
 
 _SERIALS = (
     "serial", "serial_number", "SERIAL", "instrument_serial", "instrument_serial_number",

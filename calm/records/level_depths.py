@@ -1,4 +1,7 @@
-"""Depths of current levels, which a file may give as heights or distances from an instrument."""
+"""Depths of current levels.
+
+A file may give depths, heights above the seabed, or distances from an instrument.
+"""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ OF_HEIGHT = ("pierson-moskowitz", "ochi-hubble")
 """Names of the spectra that follow from the significant height alone."""
 
 STEEPEST = 1.0 / 7.0
-"""Ratio of height to length of a breaking wave (Michell 1893); seas are far below it."""
+"""Height of a breaking wave divided by the wavelength (Michell 1893)."""
 
 HIGHEST, LONGEST_PERIOD = 30.0, 30.0
 """Largest accepted significant height [m] and peak period [s].
@@ -47,10 +47,10 @@ The ratios Tp/Tz follow from the spectral moments: 1.286 for jonswap, and 1.408 
 """
 
 SHARES = 0.02
-"""Tolerance for the sum of shares of time, which may be rounded."""
+"""Tolerance for the sum of the shares in a scatter table; the shares may be rounded."""
 
 CUT_OFF = 0.5
-"""Largest density of a measured spectrum at its last frequency, as a share of the maximum."""
+"""Largest accepted density at the last frequency of a measured spectrum, relative to the peak."""
 
 _STANDARD_NAMES = (
     "sea_surface_wave_variance_spectral_density",

@@ -244,8 +244,8 @@ _ALIKE, _UNLIKE = 0.8, 0.5
 def _turned_levels(depth: Floats, current: NDArray[np.complex128]) -> Iterator[str]:
     """Report levels whose currents match both neighbours only after a rotation or a reflection.
 
-    Depths (k,) [m] increase. Currents (n, k) [m/s] have an eastward real and a northward imaginary
-    part.
+    Depths (k,) [m] increase. Currents (n, k) [m/s] are complex numbers: the real part is eastward,
+    the imaginary part is northward.
     """
     turned = []
     for i in range(1, len(depth) - 1):

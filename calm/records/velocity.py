@@ -70,8 +70,8 @@ class Velocity:
     ----------
     names : eastward and northward velocity, or speed and direction
     up : upward velocity; None if missing
-    turn : angle to add to the direction variable for the direction of flow [degrees]; None for
-        components
+    turn : angle to add to the direction variable to obtain the direction of flow [degrees]; None if
+        `names` are components
     magnetic, true : whether the file states that directions refer to magnetic or to true north
     """
 

@@ -264,8 +264,9 @@ def years_of(step: np.timedelta64, count: int) -> float:
 
 
 def median_step(time: Times) -> np.timedelta64:
-    """Return the median time between profiles, which is not affected by gaps. For a single profile,
-    the median is zero.
+    """Return the median time between successive profiles; for a single profile, return zero.
+
+    A few gaps in the record do not change the median.
     """
     if len(time) < 2:
         return np.timedelta64(0, "ns")

@@ -361,8 +361,8 @@ class Distribution:
     percentiles : values at `PERCENTILES`; the p quantile has the rank 1 + (n - 1) p (definition 7
         of Hyndman and Fan 1996)
     maximum, time : the maximum, and its first time
-    share, value : exceedance curve: a fraction `share` of the profiles reaches or exceeds `value`.
-        The shares are 1/n and all `SHARES` above 1/n
+    share, value : points of the exceedance curve; in a fraction `share` of the profiles, the
+        quantity reaches or exceeds `value`. The shares are 1/n, and all `SHARES` above 1/n
     """
 
     count: int
