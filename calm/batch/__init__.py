@@ -1,1 +1,1 @@
-"""Solutions of one mooring for many current profiles: every profile of a record."""
+"""Solution of one mooring for every current profile of a record."""

@@ -19,7 +19,7 @@ from calm.dataset.netcdf import Attributes, Chunks, ResultLayout, packed, write_
 from calm.records.record import Levels
 
 IN_PROGRESS = 2
-"""Largest number of blocks in progress per worker, which bounds the memory of a batch."""
+"""Largest number of blocks in progress per worker. This number limits the memory of a batch."""
 
 Task = TypeVar("Task")
 Done = TypeVar("Done", covariant=True)
@@ -41,7 +41,13 @@ class Progress:
 
 
 class SolvedBlock(NamedTuple):
-    """A solved block: its chunks for the result file, and the status (n,) of each profile."""
+    """Results for a block of n profiles.
+
+    Attributes
+    ----------
+    status : (n,) status of each profile
+    chunks : data of the block for the result file
+    """
 
     status: NDArray[np.int8]
     chunks: Chunks
@@ -54,7 +60,7 @@ class BlockTask(NamedTuple):
     ----------
     layout, block : see `calm.dataset.netcdf.packed`
     time : (n,) times of the profiles
-    levels : currents, see `calm.records.record.Record.profiles`
+    levels : depths and currents, as returned by `calm.records.record.Record.profiles`
     """
 
     layout: ResultLayout

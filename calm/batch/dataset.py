@@ -1,5 +1,6 @@
-"""Layout of a batch result, which is known before the solution, and conversion of blocks to
-arrays.
+"""Layout of the result file of a batch, and conversion of solved blocks to arrays.
+
+The layout is known before the profiles are solved.
 """
 
 from __future__ import annotations
@@ -23,7 +24,8 @@ from calm.files.pieces import clamps_down
 from calm.records.record import Record
 
 _COORDINATES = {"component": "component_label depth_top", "clamp": "clamp_label clamp_depth"}
-"""Label and depth variables of each dimension, for the attribute `coordinates` of other variables.
+"""Value of the attribute `coordinates` for the variables of each dimension: the names of the label
+variable and the depth variable.
 """
 _TIME_UNITS = (("seconds", 10**9), ("milliseconds", 10**6), ("nanoseconds", 1))
 
@@ -33,7 +35,7 @@ def laid_out(
 ) -> dict[str, NDArray[Any]]:
     """Return the arrays of all time-dependent variables of a layout, by name.
 
-    `columns` are the result columns for a range of times, and `time` lists these times.
+    `time` lists the times of some profiles, and `columns` has the results of these profiles.
     """
     unit = str(layout.variables[0].attributes["units"]).partition(" ")[0]
     since = time.astype("datetime64[ns]").astype(np.int64)

@@ -56,7 +56,9 @@ def labels_of(dataset: Dataset, name: str) -> tuple[str, ...]:
 
 
 def place_of(dataset: Dataset, label: str) -> tuple[str, int]:
-    """Return the prefix of the variable names and the column number of a part of the line.
+    """Find the variables and the column of a part of the line in a result.
+
+    Returns the prefix of the variable names, such as ``clamp_``, and the number of the column.
 
     The label ``top`` selects the first component. Raises UsageError, with the nearest label, if no
     part has the label.

@@ -1,8 +1,8 @@
 """Solution of a net of legs for many current profiles, with compiled code.
 
-Each search starts from the net in still water or, without equilibrium in still water, in the
-current of the file. If the search fails or the seabed is a depth grid, the profile is solved as in
-`calm run`.
+Each search starts from the equilibrium of the net in still water. If the net has no equilibrium in
+still water, the search starts from the equilibrium in the current of the file. If the search fails
+or the seabed is a depth grid, the profile is solved as in `calm run`.
 """
 
 from concurrent.futures import ThreadPoolExecutor
@@ -43,7 +43,7 @@ TOLERANCE = 1e-6
 BLOCK = 256
 """Number of profiles that a thread solves at a time."""
 SOLVE_ALONE = 1
-"""Outcome of a profile that has to be solved on its own, as in `calm run`."""
+"""Outcome of a profile that must be solved again, as in `calm run`."""
 Column = tuple[float, ...]
 
 
@@ -52,10 +52,10 @@ class NetRows(NamedTuple):
 
     Attributes
     ----------
-    pieces : (n, p, 12) position [m] and force [N] at the upper end of each piece, then at the lower
-        end
-    clamps : (n, c, 7) position [m], sum of the forces above and below the clamp, and the larger of
-        the two [N]
+    pieces : (n, p, 12) position (3) [m] and force (3) [N] at the upper end of each piece, followed
+        by position and force at the lower end
+    clamps : (n, c, 7) position (3) of each clamp [m], sum of the forces above and below the clamp
+        (3) [N], and larger of the tensions above and below the clamp [N]
     shares : (n, l) used fraction of the buoyancy of the float at the top of each leg
     """
 
@@ -69,11 +69,13 @@ class NetArrays(NamedTuple):
 
     Attributes
     ----------
-    on, still : work arrays for a profile, and the water without current
-    start, slopes, scale : unknowns of the net at the starting point, Jacobian and scales
+    on : work arrays for the levels of a profile
+    still : water without current
+    start : values of the unknowns at the starting point
+    slopes, scale : Jacobian of the net at the starting point, and scales of the unknowns
     x : work array for the unknowns
-    piece, clamp : first row in `NetRows` of the pieces and the clamps of each leg
-    weight : anchor weight of each leg [N]; inf without an anchor
+    piece, clamp : numbers of the first piece and of the first clamp of each leg, as in `NetRows`
+    weight : anchor weight of each leg [N]; inf for a leg without an anchor
     """
 
     on: solving.ProfileLevels
@@ -191,7 +193,7 @@ class NetProfiles:
     net: Design
 
     def water(self, depth: Column, u: Column, v: Column, w: Column) -> Water:
-        """Return the water of the net, with its current replaced by the given profile."""
+        """Return the water of the net; the given profile replaces the current of the file."""
         environment = replace(self.net.file.environment, current=CurrentTable(depth, u, v, w))
         return self.net.water_of(environment)
 
@@ -216,8 +218,8 @@ class NetProfiles:
     def base(self) -> NetSolution | None:
         """Solution from which the search starts.
 
-        This is the solution in still water or, if there is none, the solution in the current of the
-        file.
+        If the net has an equilibrium in still water, the search starts from this equilibrium,
+        otherwise from the equilibrium in the current of the file. None if neither exists.
         """
         with suppress(NoEquilibrium):
             return self.still or self.net.standing
@@ -227,7 +229,7 @@ class NetProfiles:
     def slopes(self) -> tuple[Floats, Floats] | None:
         """Jacobian of the net at the starting point, and the scales of the unknowns.
 
-        The value is None if each profile must be solved on its own.
+        The value is None if each profile must be solved as in `calm run`.
         """
         if self.base is None or isinstance(self.net.file.environment.seabed, SeabedGrid):
             return None
@@ -248,11 +250,10 @@ class NetProfiles:
     def solve(
         self, current: tuple[Floats, ...], status: NDArray[np.int8], workers: int
     ) -> dict[str, Floats]:
-        """Solve the profiles with status 0; set their status, and return the result columns by
-        name.
+        """Solve the profiles with status 0, update `status`, and return the result columns by name.
 
-        The current has the depths (1 or n, k) of levels [m], and u, v, w (n, k) [m/s]. The `status`
-        (n,) of each profile is an index in `STATUSES`.
+        `current` consists of four arrays: level depths (1 or n, k) [m], and u, v and w (n, k)
+        [m/s]. `status` (n,) has an index in `STATUSES` for each profile.
         """
         count, pieces = len(status), self.net.file.pieces
         shapes = (len(pieces), 12), (len(clamps_down(pieces)), 7), (len(self.net.legs),)

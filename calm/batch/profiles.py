@@ -52,12 +52,13 @@ _STILL = CurrentTable((0.0,), (0.0,), (0.0,), (0.0,))
 class Profiles(Columnar):
     """Results of a mooring for n profiles, with NaN for a profile whose `status` is not 0.
 
-    Depths, offsets and knockdown are in m, tensions and forces in N, tilt in degrees. If the
-    currents were given with more dimensions, these dimensions replace n.
+    Depths, offsets and knockdown are in m, tensions and forces in N, tilt in degrees.
 
-    The attributes in `Profiles.columns` have the shape (n, p) for the p components, in the order of
-    the file with the anchor last. Columns of clamps, such as ``clamp_depth``, have the shape (n,
-    m), down the line. Values at the ends have the shape (n,), or (n, l) for a net of l legs.
+    Attributes for the components, such as ``tilt``, have the shape (n, p). The p components are in
+    the order of the file, with the anchor last. Attributes for the clamps, such as ``clamp_depth``,
+    have the shape (n, m), in order down the line. Attributes for the ends of the line, such as
+    ``top_depth``, have the shape (n,), or (n, l) for a net of l legs. If the profiles form an array
+    with several dimensions, these dimensions replace n.
 
     Attributes
     ----------
@@ -135,7 +136,7 @@ class Profiles(Columnar):
         """Return a data frame with one row per profile, and one column per quantity and label.
 
         An example of a column is ``frame["tilt", "adcp"]``. Values of the whole line have the label
-        0, or the label of the leg.
+        0. In a net, the label is the number of the leg, counted from 0.
         """
         import pandas
 
@@ -246,8 +247,9 @@ class Batch:
     def slopes(self, u: Floats, v: Floats, depth: Floats) -> tuple[Profiles, Floats]:
         """Solve profiles (n, k) of a moored line in one thread, with derivatives of the depths.
 
-        The derivatives (n, m + p, 2 k) of the depths of clamps and components are with respect to u
-        and v at each level [s]; NaN without an equilibrium.
+        The derivatives (n, m + p, 2 k) [s] are the changes in depth of the m clamps and p
+        components per change of u and v at each level. The derivatives are NaN for a profile
+        without equilibrium.
         """
         _, current = _checked(u, v, depth, None)
         return self._solve_alone(self.mooring.moored, current, 1, 2 * current[1].shape[1])
@@ -261,8 +263,10 @@ class Batch:
     def _solve_alone(
         self, leg: Leg, current: tuple[Floats, ...], workers: int | None, columns: int = 0
     ) -> tuple[Profiles, Floats]:
-        """Return the profiles, and the derivatives of the depths with respect to `columns`
-        components of the current.
+        """Solve profiles of a single line.
+
+        Return the results, and the derivatives (n, m + p, `columns`) of the depths of clamps and
+        components with respect to u and v at each level. `columns` is 0 to omit the derivatives.
         """
         count = len(current[1])
         rows = unsolved(leg.line, count, columns)
@@ -316,7 +320,7 @@ class Batch:
 
     @cached_property
     def _starts(self) -> Floats:
-        """Starting values of the search, which are the same for all profiles of a line."""
+        """Starting values of the search; all profiles of a line have the same starting values."""
         leg = self.mooring.moored
         none = np.zeros((0, 1))
         current = np.zeros((1, 1)), none, none, none
@@ -353,8 +357,9 @@ class Batch:
         room: int,
         starts: Floats | None,
     ) -> Floats:
-        """Solve profiles and return the starting values of the search, which are computed if
-        `starts` is None.
+        """Solve profiles, and return the starting values of the search.
+
+        If `starts` is None, the starting values are computed, otherwise they are `starts`.
         """
         line, water = leg.line, self.water
         depth, *parts = current
@@ -383,7 +388,8 @@ class Batch:
 def unsolved(line: Line, count: int, columns: int = 0) -> Results:
     """Create results filled with NaN for `count` profiles.
 
-    The results include derivatives with respect to `columns` components of the current.
+    `columns` is the number of current components in the derivatives of the depths; 0 omits the
+    derivatives.
     """
     pieces, clamps = len(line.length), len(line.clamp_piece)
     shapes = [
@@ -445,7 +451,7 @@ def _reshaped(profiles: Profiles, shape: tuple[int, ...]) -> Profiles:
 
 
 def _measured(leg: Leg, rows: Results, status: NDArray[np.int8]) -> Profiles:
-    """Build the results from the rows of all profiles, and add the anchor."""
+    """Build the results of all profiles, with the values of the anchor as the last component."""
     pieces, clamps, ends, _ = rows
     above = leg.file.pieces[:-1]
     depth_top = np.full(pieces.shape[-1], np.nan)

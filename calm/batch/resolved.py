@@ -15,7 +15,7 @@ from calm.dataset.netcdf import Attributes
 from calm.version import __version__
 
 RESOLVED, HASH = "input_resolved", "input_sha256"
-"""Names of the attributes of a result file: its input as JSON, and the SHA-256 of the input and the
+"""Names of two attributes of a result file: the input as JSON, and the SHA-256 hash of input and
 measurements.
 """
 
@@ -70,7 +70,8 @@ def resolved_input(
 def with_input(text: str) -> Attributes:
     """Return the result attributes for the input `text`, with a placeholder for the hash.
 
-    The hash replaces the placeholder after the measured values are read; both have the same length.
+    The placeholder is as long as the hash. The hash replaces the placeholder after the measured
+    values are read.
     """
     return {RESOLVED: text, **InputHash(text).attributes()}
 

@@ -1,7 +1,7 @@
 """Solution of successive profiles with the search of `calm.solve`, and calculation of the results.
 
-The tolerance is about a millionth of the depth. The results are extrapolated from two solutions,
-one with segments of half the length.
+The tolerance is about a millionth of the depth. The results are extrapolated from two solutions.
+The segments of the second solution have half the length.
 """
 
 from math import atan2, inf, isfinite, nan, pi, sqrt
@@ -56,16 +56,22 @@ NO_CURRENT, LEVELS_COINCIDE, LIES_ON_SEABED, LACKS_ROOM = range(100, 104)
 SLOPE_STEP = 0.001
 """Change in a current component for the finite-difference slopes [m/s]."""
 NUDGE = 1e-4
-"""Change in the unknown of a line for the finite-difference slopes, as a fraction of the range of
-the unknown.
+"""Change in the unknown of the search for the finite-difference slopes.
+
+The change is a fraction of the range of the unknown.
 """
 
 
 class Results(NamedTuple):
-    """Results of n profiles: pieces (n, 6, p), clamps (n, 5, m) and ends (n, 6).
+    """Results of n profiles for a line with p pieces and m clamps.
 
-    `slopes` (n, m + p, 2 k) are the derivatives of the depths of clamps and pieces with respect to
-    u and v at each level [s]. The shape (n, 0, 0) omits the derivatives.
+    Attributes
+    ----------
+    pieces : (n, 6, p) the six quantities `OF_PIECE` of each piece
+    clamps : (n, 5, m) the five quantities `OF_CLAMP` of each clamp
+    ends : (n, 6) the quantities `OF_ENDS`
+    slopes : (n, m + p, 2 k) derivatives of the depths of clamps and pieces with respect to u and v
+        at each level [s]; (n, 0, 0) if no derivatives are required
     """
 
     pieces: Floats
@@ -79,9 +85,10 @@ class ProfileLevels(NamedTuple):
 
     Attributes
     ----------
-    read, joined : levels of the profile, and all levels after the merge (see `lay_profile`)
+    read : levels of the profile
+    joined : levels of the profile merged with the fixed levels, see `lay_profile`
     levels, intervals, bends : as in `Sea`
-    fixed : (f, 4) levels merged with every profile: depth, additional u and v, density
+    fixed : (f, 4) levels of the mooring's water: depth, u and v added to the profile, density
     """
 
     read: Floats
@@ -114,8 +121,8 @@ class ProfileArrays(NamedTuple):
     ----------
     on : work arrays for the levels of a profile
     may_lie : (p,) whether each piece may lie on the seabed in a sub-surface mooring
-    depths : (3, m + p) depths of clamps and pieces, slopes of these depths with respect to the
-        searched unknown, and depths in a changed current
+    depths : (3, m + p) work array for `measure_slopes`: depths of clamps and pieces, derivatives of
+        these depths with respect to the unknown of the search, and depths in a changed current
     """
 
     on: ProfileLevels
@@ -170,9 +177,10 @@ def solve_rows(
 def sea_of(
     on: ProfileLevels, depth: Floats, u: Floats, v: Floats, w: Floats, case: int, still: Sea
 ) -> tuple[int, Sea]:
-    """Return the outcome and the water of a profile: FOUND, NO_CURRENT or LEVELS_COINCIDE.
+    """Return the outcome and the water of a profile.
 
-    Gravity and viscosity are those of the water `still`. For the currents, see `solve_rows`.
+    The outcome is FOUND, NO_CURRENT or LEVELS_COINCIDE. Gravity and viscosity are those of the
+    water `still`. For `depth`, `u`, `v` and `w`, see `solve_rows`.
     """
     at = depth[case if depth.shape[0] > 1 else 0]
     found, ending, total = read_profile(at, u[case], v[case], w[case], on.read), FOUND, 0
@@ -188,7 +196,10 @@ def sea_of(
 
 
 def in_current(problem: LineProblem, on: ProfileLevels, sea: Sea) -> LineProblem:
-    """Return a copy of a problem in the water `sea` of the profile whose levels are in `on`."""
+    """Return a copy of a problem in the water `sea` of a profile.
+
+    `on` has the levels of the profile.
+    """
     given = problem.limits
     moving = False
     for k in range(len(sea.intervals) - 1):
@@ -265,7 +276,7 @@ def measure(
 def lean_of_head(
     problem: LineProblem, referee: Referee, results: Results, case: int, head: int
 ) -> None:
-    """Set the tilt of the pieces at the head of the line, which form one rod."""
+    """Set the tilt of the pieces at the head of the line; together, these pieces form one rod."""
     fine = problem.work.records[FINE]
     end = referee.last[head - 1]
     dx, dy, dz = fine[0][0] - fine[0][end], fine[1][0] - fine[1][end], fine[2][0] - fine[2][end]
@@ -288,9 +299,9 @@ def measure_slopes(
 ) -> None:
     """Write the derivatives of the depths with respect to the current components to row `case`.
 
-    The derivatives are finite differences with the same segments. The implicit function theorem
-    gives the change of the unknown that the search solves for. A line with several floats at the
-    surface is solved again for each component.
+    The derivatives are finite differences between two shapes with the same segments. The implicit
+    function theorem gives the change in the unknown of the search, so that the search is not
+    repeated. Only a line with several floats at the surface is solved again for each component.
     """
     found, row = problem.work.found, slopes[case]
     unknown = Unknown(
@@ -333,8 +344,8 @@ def measure_slopes(
 def depths_of(problem: LineProblem, referee: Referee, marched: bool, depths: Floats) -> None:
     """Write the depths of clamps and pieces to `depths` (m + p,).
 
-    If `marched` is set, the depths are taken from the last march, otherwise from the extrapolated
-    shape.
+    If `marched` is set, the depths are those of the last integration along the line, otherwise
+    those of the extrapolated shape.
     """
     record, work = problem.work.records[FINE], problem.work
     nodes = int(work.left[MARCHED] if marched else work.found[NODES])
@@ -397,9 +408,10 @@ def used_buoyancy(problem: LineProblem) -> float:
 
 
 def read_profile(depth: Floats, u: Floats, v: Floats, w: Floats, read: Floats) -> int:
-    """Copy the valid levels of a profile at or below the surface, sorted by depth.
+    """Copy the valid levels of a profile to `read`, sorted by depth.
 
-    Return the number of levels, or −1 if two levels have the same depth.
+    Levels above the surface are omitted. Return the number of copied levels, or −1 if two levels
+    have the same depth.
     """
     count = 0
     for j in range(depth.size):
@@ -435,13 +447,13 @@ def between(table: Floats, count: int, k: int, depth: float, c: int) -> float:
 def lay_profile(
     read: Floats, count: int, fixed: Floats, levels: Any, intervals: Any, joined: Floats
 ) -> int:
-    """Merge a profile with the fixed levels, write levels and intervals as in `Sea`, and count the
-    levels.
+    """Merge a profile with the fixed levels, and return the number of merged levels.
 
     Parameters
     ----------
     read : depth, u, v, w of the profile's levels
-    fixed : (f, 4) depth, addition to u and to v, density
+    fixed : (f, 4) depth, u and v added to the profile, and density of each fixed level
+    levels, intervals : receive the merged levels and the intervals between them, as in `Sea`
     joined : receives depth, u, v, w, density of the merged levels
     """
     total = i = j = 0
@@ -481,8 +493,10 @@ def lay_profile(
 
 
 def value_at(table: Floats, count: int, k: int, depth: float, c: int) -> float:
-    """Return column `c` of a table at a depth, as `between` does, but exactly if level `k` is at
-    this depth.
+    """Return column `c` of a table at a depth.
+
+    If level `k` is at this depth, return the value in the table. Otherwise, interpolate with
+    `between`.
     """
     if k < count and table[k, 0] == depth:
         return float(table[k, c])

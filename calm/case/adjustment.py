@@ -18,13 +18,13 @@ from calm.files.pieces import numbered, parts_of, placed
 from calm.units import DIMENSIONS, QuantityError, parse_quantity, with_unit
 
 MOST_BUOYANCY = 100.0
-"""Largest factor on the buoyancy of a float, unless the user gives a range."""
+"""Default upper limit for the buoyancy of a float, as a multiple of its present buoyancy."""
 MOST_LENGTH = 2.0
-"""Largest length of a piece, in water depths, unless the user gives a range."""
+"""Default upper limit for the length of a piece, as a multiple of the water depth."""
 LEAST_LENGTH = 0.01
 """Smallest length of a cable or chain [m]."""
 MOST_COUNT = 1000
-"""Largest count of a component, unless the user gives a range."""
+"""Default upper limit for the count of a component."""
 
 Parts = tuple[Piece | Clamp, ...]
 
@@ -41,12 +41,13 @@ class Adjustment:
     Attributes
     ----------
     text : name of the parameter, e.g. ``top float.buoyancy``
-    file, parts : the mooring and the changed parts, in their original state
+    file : the original mooring
+    parts : the original parts to which the parameter belongs
     dimension : a key of `calm.units.DIMENSIONS`
     now : value before the change
     range : default smallest and largest value
     to : function that returns the mooring for a new value
-    bounded : whether the user may not go below the lower end of `range`
+    bounded : whether the lower end of `range` is the smallest value that the user may set
     whole : whether the value must be a whole number
     """
 
@@ -116,8 +117,9 @@ def _buoyancy(text: str, file: MooringFile, parts: Parts) -> Adjustment:
 
 
 def _length(text: str, file: MooringFile, parts: Parts) -> Adjustment:
-    """Vary the unstretched length of a cable or chain [m]; clamps keep their distances from its
-    upper end.
+    """Vary the unstretched length of a cable or chain [m].
+
+    Clamps keep their distances from the upper end of the cable or chain.
     """
     pieces = [part for part in parts if isinstance(part, Piece)]
     if len(pieces) < len(parts) or not isinstance(pieces[0].component, Flexible):
@@ -182,8 +184,9 @@ _NUMBERED = re.compile(r"(.+) \d+")
 
 
 def _without_numbers(once: Sequence[Piece], item: Sequence[Piece]) -> list[Piece]:
-    """Return the pieces of one copy of an item, with numbers removed from labels that differ only
-    by their numbers in the item.
+    """Return the pieces `once` of one copy of an item, without the numbers of repeated labels.
+
+    For example, ``glass 1`` becomes ``glass`` if the item also has ``glass 2``.
     """
     stems = Counter(
         found[1] for part in parts_of(item) if (found := _NUMBERED.fullmatch(part.label))
@@ -242,10 +245,10 @@ def parse_change(text: str, file: MooringFile) -> Adjustment:
 
 
 def parse_range(texts: tuple[str, str] | None, change: Adjustment) -> tuple[float, float]:
-    """Parse the lower and upper end of a range, each with its unit.
+    """Parse the lower and upper end of a range, each with a unit.
 
-    The default is the range of the parameter. Raises UsageError if an end is not allowed or the
-    ends are in the wrong order.
+    If `texts` is None, the default range of the parameter is returned. Raises UsageError if an end
+    is not allowed, or if the ends are in the wrong order.
     """
     if texts is None:
         low, high = change.range

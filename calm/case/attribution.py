@@ -1,7 +1,7 @@
 """Attribution of a mooring's knockdown and excursion to the drag of each part.
 
-Let y(λ₁ … λ_p) be the quantity to explain, such as the knockdown, of the line with drag i
-multiplied by λ_i. The share of drag i in y is its Aumann–Shapley value,
+Let y be the quantity to explain, such as the knockdown. If the drag of part i is multiplied by λ_i,
+the quantity is y(λ₁ … λ_p). The share of drag i in y is its Aumann–Shapley value,
 
     share_i = ∫₀¹ ∂y/∂λ_i (s, …, s) ds
 
@@ -39,8 +39,7 @@ _STEP = 2e-4
 of the solver.
 """
 SETTINGS = Settings(angle_step=radians(4.0), tolerance=1e-10)
-"""Coarse solver settings, which suffice because the contributions are scaled to the total in the
-end.
+"""Coarse solver settings. They suffice, because the contributions are finally scaled to the total.
 """
 
 
@@ -50,8 +49,10 @@ and index of the clamp or -1.
 """
 
 Varied = Callable[[int, Line], Floats]
-"""Function of the number of a leg and a new line for this leg, which returns the three values of
-`Attribution`.
+"""Function that solves the mooring with a slightly changed line in one leg.
+
+The arguments are the number of the leg and the changed line. The result (3,) is the depth, the
+excursion and the used buoyancy, as in `Attribution`.
 """
 
 
@@ -66,8 +67,8 @@ class Attribution:
     ----------
     parts : leg, piece and clamp on which each drag acts; the clamp is -1 for the piece itself
     start : (3,) values without drag, or with the smallest drag
-    shares : (p, 3) contributions, which add up to the total change
-    miss : (3,) relative error of these sums before scaling to the total change
+    shares : (p, 3) contributions, scaled so that they add up to the total change
+    miss : (3,) relative error of the sum of the contributions before the scaling
     """
 
     parts: list[SolverPart]
@@ -87,10 +88,10 @@ def attribute(
     Parameters
     ----------
     lines : lines of the legs, or a single line
-    near : function that solves these lines and returns a second function, which returns the (3,)
-        values at the point for a variant of one line
-    start : (3,) values without drag; None if the shape without drag is not unique, so that the
-        shares begin at `LEAST_DRAG`
+    near : function that solves these lines, and returns a function `Varied` for variants of the
+        lines
+    start : (3,) values without drag. If the shape without drag is not unique, `start` is None, and
+        the integral over the drag begins at `LEAST_DRAG`
     whole : (3,) values with full drag
 
     Raises
@@ -152,8 +153,9 @@ def _integral(
     least: float,
     stages: int,
 ) -> Floats:
-    """Compute the contributions (p, 3), ∫ ∂y/∂λ ds from `least` to 1, with s = t² and ∂y/∂λ =
-    (∂y/∂ln λ)/s.
+    """Compute the contributions (p, 3), which are the integrals ∫ ∂y/∂λ ds from `least` to 1.
+
+    The variable of integration is t, with s = t². The derivative ∂y/∂λ is (∂y/∂ln λ)/s.
     """
     abscissae, weights = np.polynomial.legendre.leggauss(stages)
     low = np.sqrt(least)

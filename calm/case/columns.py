@@ -1,7 +1,7 @@
 """Definition of a result column: title, unit, description, computation and outputs.
 
-`calm.case.result_tables` has one entry for each column, which appears in every output named in the
-entry.
+`calm.case.result_tables` has one entry for each column. The entry names the outputs in which the
+column appears.
 """
 
 from __future__ import annotations
@@ -56,13 +56,14 @@ class ResultColumn:
     quantity : title, unit and digits of a numeric column; None for text
     description : meaning, for the manual and the NetCDF `long_name`
     prefix : prefix of the name in NetCDF and batches
-    of_part : function of the piece or clamp of the file
-    found : function of `LineFigures`, `ClampFigures` or `NodeFigures` that returns the values (n,)
-    at_anchor : function for the row of an anchor, of a `LineEnd` or, for a clamp on the anchor, of
-        an `OnAnchor`; supplements `found`
-    derived : function of a namespace with the earlier columns and, as `part`, the n pieces or
-        clamps; returns the values (…, n)
-    of_row : function of a row and the mooring file, for outputs only
+    of_part : function that returns the value for a piece or clamp of the file
+    found : function that returns the values (n,) from `LineFigures`, `ClampFigures` or
+        `NodeFigures`
+    at_anchor : function that returns the value for an anchor from a `LineEnd`, or for a clamp on
+        the anchor from an `OnAnchor`. `found` does not cover these rows
+    derived : function that returns the values (…, n) from other columns. The argument is a
+        namespace with the earlier columns, and with the n pieces or clamps as `part`
+    of_row : function that returns the value for outputs from a row and the mooring file
     worst : selects the value shown in the builder if several pieces share a row
     place : rank from the left in printed tables; columns without a rank come last
     attributes : additional attributes of the NetCDF variable
@@ -132,9 +133,9 @@ def column(
     Parameters
     ----------
     description, outputs, more : attributes of the `ResultColumn`
-    title, unit, decimals : properties of the quantity. Without `unit`, the quantity is the entry of
-        `QUANTITIES` with the name of the field, under the heading `title` if given. Without an
-        entry, the column is text
+    title, unit, decimals : properties of the quantity. If `unit` is None, the quantity is the entry
+        of `QUANTITIES` with the name of the field, and `title` replaces its heading. If
+        `QUANTITIES` has no such entry, the column is text
     in_repr : whether the `repr` of a row includes the field
     """
 

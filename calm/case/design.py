@@ -273,7 +273,11 @@ class Design:
 
     @cached_property
     def typed_legs(self) -> tuple[Leg, ...]:
-        """Legs whose `for_surface` states whether the leg floats at the surface in still water."""
+        """Legs, with `for_surface` set for each leg of a net.
+
+        `for_surface` is true if the leg floats at the surface in still water. The leg of a mooring
+        or a tow is unchanged.
+        """
         if not self.several:
             return self.legs
         try:
@@ -383,9 +387,10 @@ class Result:
 
     Attributes
     ----------
-    iterations, segments : number of marches, and of segments of the final shape
-    miss : largest distance of an end from its required position [m]; for one leg, the vertical
-        distance
+    iterations : number of integrations along the line that the solver needed
+    segments : number of segments of the final shape
+    miss : distance of an end from its required position [m]: the largest distance in a net, the
+        vertical distance for a single leg
     closure : relative force residual, recomputed from the final coordinates
     nodes : positions of the nodes of a net
     notebook_form, netcdf_form, plot_form : functions for HTML, NetCDF and pictures, set by packages
@@ -703,7 +708,8 @@ def load_in(
 ) -> list[Design]:
     """Read a file as `load` does, once for each environment.
 
-    None stands for the default environment and all environments that the file names.
+    If `environments` is None, the file is read for its default environment, and for every
+    environment named in the file. A tow is then read for its default environment only.
 
     Raises InputError with the mistakes of all environments.
     """

@@ -156,8 +156,10 @@ class Neighbours(NoMemory):
         self._still: Nearby | None = None
 
     def of(self, solver: Callable[P, T], *given: P.args, **named: P.kwargs) -> T:
-        """Call a solver, but replace `solve_mooring` by a search that starts from the known
-        equilibrium.
+        """Call a solver with the given arguments, and return the outcome.
+
+        If the solver is `solve_mooring`, a search that starts from the known equilibrium replaces
+        it.
         """
         if solver is solve_mooring:
             solved: Any = self._solved
@@ -181,8 +183,9 @@ class Neighbours(NoMemory):
 
 
 def drawn(leg: Leg, draws: Iterable[Draw]) -> Iterator[Leg]:
-    """Yield the leg of a mooring for each draw; its solution starts from the equilibrium of the
-    original leg.
+    """Yield the leg of a mooring for each draw.
+
+    When a drawn leg is solved, the search starts from the equilibrium of the original leg.
 
     Raises NoEquilibrium if the original leg has no equilibrium.
     """

@@ -70,12 +70,14 @@ class Explanation:
 
     Attributes
     ----------
-    quantities : explained quantities, as columns of `causes`: excursion, with the knockdown if the
-        shape in still water is unique, or with the used buoyancy of a surface float
+    quantities : names of the explained columns of `causes`. These are excursion and used buoyancy
+        for a leg with a surface float. For other legs, they are knockdown and excursion, or
+        excursion alone if the knockdown is undefined
     figures : values of the original mooring
     without_drag : contribution to each quantity that is not caused by drag
     causes : contributions of the drags; None if unknown
-    miss : largest relative error of the sums of contributions before scaling
+    miss : largest relative error of the sums of the contributions, before the contributions are
+        scaled to the total
     changes : results for more buoyancy, less drag, and more and less current
     """
 
@@ -117,9 +119,9 @@ def _change_document(change: WhatIf) -> dict[str, Any]:
 def explain(result: Result, label: str | None = None) -> Explanation:
     """Explain the knockdown and excursion of a mooring or a net of legs.
 
-    The mooring is also solved with changed inputs, in which a fitted piece keeps its length. The
-    `label` selects a clamp, or a piece whose upper end is explained. The default is the free end,
-    in a net the first free end.
+    The mooring is also solved with changed inputs; the length of a fitted piece does not change
+    with the inputs. The explained point is the clamp, or the upper end of the piece, with the
+    `label`. By default, the point is the free end of the line, or the first free end of a net.
 
     Raises
     ------

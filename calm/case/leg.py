@@ -40,8 +40,8 @@ class Leg:
 
     Attributes
     ----------
-    file : file with this leg only, pieces from the upper end. The last piece is the anchor or a
-        stand-in with the id `STAND_IN`, except in a tow
+    file : file with this leg only. Pieces are listed from the upper end. In a leg that is not
+        towed, the last piece is the anchor, or a stand-in with the id `STAND_IN`
     for_surface : whether the leg is designed to reach the surface; None to determine this from the
         leg
     memory : cache of solutions for earlier versions of the file and other environments
@@ -257,8 +257,8 @@ class Leg:
     def refuse_in_the_slope(self, solution: Solution) -> None:
         """Raise NoEquilibrium if a line would penetrate the seabed of a depth grid.
 
-        The suspended part of the line may be below the grid, but no farther than the grounded part,
-        because the solver assumes a plane seabed.
+        The solver assumes a plane seabed, so the grounded part of the line may be below the depth
+        grid. The suspended part must not be farther below the grid than the grounded part.
         """
         depth = self.water.depth
         if self.file.environment.seabed is None:

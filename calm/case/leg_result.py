@@ -70,7 +70,7 @@ class LegResult:
 
     @property
     def iterations(self) -> int:
-        """Number of marches of the solver."""
+        """Number of integrations along the line that the solver needed."""
         return self.solution.marches
 
     @property
@@ -130,9 +130,10 @@ class LegResult:
 
     @cached_property
     def components(self) -> Components:
-        """Pieces in line order, which is from the ship down for a tow.
+        """Pieces in line order; the pieces of a tow are listed from the ship down.
 
-        The last piece of a leg without an anchor is a stand-in, whose values have no meaning.
+        The last piece of a leg without an anchor is a stand-in. The values of a stand-in have no
+        meaning.
         """
         pieces = self.file.pieces
         if self.towed:

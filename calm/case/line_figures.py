@@ -1,4 +1,4 @@
-"""Arrays of values on a solved line, which become the columns of pieces, clamps and nodes.
+"""Arrays of values on a solved line, for the result tables of pieces, clamps and nodes.
 
 Pieces are in the order of the file, without the anchor.
 """
@@ -98,8 +98,8 @@ class LineFigures:
         """(n,) angle between the vertical and the straight line through the ends of each piece
         [degrees].
 
-        A piece without length has the angle of the tension. The pieces at the head of the line form
-        one rod.
+        The tilt of a piece without length is the angle of the tension. Rigid pieces at the head of
+        the line form one rod and have the same tilt.
         """
         solution, chord = self.solution, self.top - self.bottom
         pull = solution.force[self.upper] + solution.force[self.lower]
@@ -165,8 +165,8 @@ class ClampFigures:
     def tilt(self) -> Floats:
         """(m,) tilt [degrees].
 
-        On a rigid piece, the tilt of the piece; on a cable or chain, the angle of the mean tension
-        above and below the clamp.
+        A clamp on a rigid piece has the tilt of the piece. A clamp on a cable or chain has the
+        angle of the mean tension above and below the clamp.
         """
         solution, elements = self.solution, self._elements
         pull = solution.force[elements] + solution.force[elements + 1]
@@ -204,7 +204,11 @@ class NodeFigures:
 
     @property
     def tilt(self) -> Floats:
-        """(k,) angle of the segment that ends at the node, from the vertical [degrees]."""
+        """(k,) angle from the vertical of the segment between each node and the node before it
+        [degrees].
+
+        The first node has the angle of the first segment.
+        """
         chord = self.solution.position[:-1] - self.solution.position[1:]
         if self.solution.line.towed:
             chord = -chord

@@ -47,7 +47,7 @@ def shape_of(solution: Solution) -> Shape:
 
 
 def with_anchor(above: Components, anchor: Piece, depth: float) -> Components:
-    """Append the row of the anchor, which stands upright below the line, to the components."""
+    """Append the row of the anchor to the components; the anchor stands upright below the line."""
     end = LineEnd(above.rows(slice(-1, None))[0], anchor, depth)
     return Components.joined([above, _standing(Components, anchor, end)])
 

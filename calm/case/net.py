@@ -61,9 +61,9 @@ def solve_together(
 
 
 def _why_not(legs: Sequence[Leg], laid: Sequence[NetLeg]) -> NoEquilibrium | None:
-    """Return the reason if a net sinks, or if its legs are too short for the distance of its ends.
+    """Return the error for a net that sinks, or whose legs are too short to join its fixed ends.
 
-    The weight of pieces that may lie on the seabed is ignored.
+    The weight of pieces that may lie on the seabed is ignored. Return None for any other net.
     """
     lift = 0.0
     for each in laid:

@@ -67,7 +67,7 @@ def _listed(labels: Sequence[str]) -> str:
 def naming_the_piece(pieces: Sequence[Piece], *, towed: bool = False) -> Iterator[None]:
     """Context manager that adds the label of the affected piece to errors raised by the solver.
 
-    `towed` is set for a tow, whose pieces the solver numbers from the lower end.
+    `towed` is set for a tow, because the solver numbers the pieces of a tow from the lower end.
     """
     try:
         yield
@@ -163,10 +163,10 @@ def _place_of(file: MooringFile, label: str) -> Location:
 
 
 def below_the_seabed(file: MooringFile, solution: Solution, depth: float) -> Floats:
-    """Return the distance of each node below the seabed, shape (k + 1,) [m]; NaN outside the depth
-    grid.
+    """Return the distance (k + 1,) of each node below the seabed [m].
 
-    `depth` is the water depth at the anchor of the leg, or at the origin without an anchor [m].
+    The distance is NaN outside the depth grid. `depth` is the water depth [m] at the anchor of the
+    leg. For a leg without an anchor, it is the water depth at the origin.
     """
     seabed, place = file.environment.seabed, solution.position
     assert seabed is not None

@@ -51,8 +51,9 @@ class ProfilerTravel:
 
 
 def profilers_of(leg: Leg) -> tuple[ProfilerTravel, ...]:
-    """Solve a line with one profiler at a time along its path, and the other profilers at their
-    upper stops.
+    """Solve a line with each profiler at `PLACES` positions between its two stops.
+
+    While one profiler is moved, the other profilers stay at their upper stops.
 
     Raises NoEquilibrium if there is no equilibrium at one of the `PLACES` positions.
     """
@@ -99,9 +100,10 @@ def _found(leg: Leg, clamp: Clamp, at: float) -> ProfilerPlace:
 
 
 def held(file: MooringFile, place: Place | None = None, at: float = 0.0) -> MooringFile:
-    """Return a copy of a file in which no profiler travels; one profiler may be moved.
+    """Return a copy of a file in which every profiler is a fixed instrument.
 
-    The profiler at `place` moves to the unstretched distance `at` from the top of its wire [m].
+    If `place` is given, the profiler at this place in the file is fixed at the unstretched distance
+    `at` from the top of its wire [m]. All other profilers stay at their upper stops.
     """
 
     def unmoved(clamp: Clamp) -> Clamp:

@@ -554,7 +554,8 @@ class Shape:
     ----------
     depth, x, y : (k,) depth, east and north [m]
     tension : (k,) tension [N]
-    tilt : (k,) angle from the vertical of the segment that ends at the node [degrees]
+    tilt : (k,) angle from the vertical of the segment between each node and the node before it
+        [degrees]
     """
 
     prefix: ClassVar[str] = "shape_"
@@ -855,7 +856,7 @@ class WithClamps(Protocol):
 
 
 def rows_by_place(result: WithClamps) -> dict[Place, ComponentRow | ClampRow]:
-    """Map the place of each piece and clamp in the file to its row in the result."""
+    """Return the result rows of all pieces and clamps, by their places in the file."""
     return {row.place: row for row in (*result.components, *result.clamps)}
 
 

@@ -21,11 +21,13 @@ MET, MET_ALREADY, NOT_MET = "met", "met-already", "not-met"
 _NOTHING = 1e-6
 """Relative change of the target quantity that is treated as no change."""
 SOLVES = 60.0
-"""Approximate number of equilibria per answer; each value tried takes three equilibria."""
+"""Approximate number of equilibria per sizing; each value of the parameter needs three."""
 
 _EXACT = 1e-7
-"""Error at which an `=` target counts as met, as a fraction of the limit or of the initial distance
-to the limit.
+"""Relative error at which a target with `=` counts as met.
+
+The error is relative to the larger of two values: the limit, and the difference between the
+original value and the limit.
 """
 
 

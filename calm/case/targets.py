@@ -172,9 +172,11 @@ class Figures:
 
 
 def figures_of(result: Result, place: Place | None = None) -> Figures:
-    """Return the summary values of a result, with the position of a part, by default the top.
+    """Return the summary values of a result.
 
-    With several anchors, the anchor values are those of the largest required weight.
+    Depth, knockdown and excursion are those of the part at `place`, by default the top of the line.
+    If there are several anchors, the anchor values are those of the anchor with the largest
+    required weight.
     """
     spot, leg = spot_of(result, place), leg_at(result, place)
     anchor = max(result.anchors, key=lambda one: one.required_weight or 0.0, default=None)

@@ -22,7 +22,8 @@ def at_speed(tow: Design, speed: float) -> Design:
 def sweep(tow: Design, speeds: Iterable[float]) -> list[Result | NoEquilibrium]:
     """Solve a tow at several ship speeds > 0 [m/s].
 
-    The item for a speed without equilibrium is the reason. Raises NoEquilibrium if the tow has a
-    fitted cable that cannot reach the required depth at the speed in the file.
+    The list has a result for each speed, or the exception NoEquilibrium for a speed without
+    equilibrium. Raises NoEquilibrium if the tow has a fitted cable that cannot reach the required
+    depth at the speed in the file.
     """
     return [or_why_not(at_speed(tow, speed).solve) for speed in speeds]

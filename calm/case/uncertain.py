@@ -1,6 +1,7 @@
 """Uncertainty of a mooring's results, from solutions for many random draws of its inputs.
 
-Every sample passes every check of a solution.
+Every solution is checked as in a single run. A sample whose solution fails a check counts as a
+sample without equilibrium.
 """
 
 from __future__ import annotations
@@ -33,8 +34,15 @@ LEVELS = (5.0, 50.0, 95.0)
 
 @dataclass(frozen=True)
 class Contribution:
-    """Fractions of a quantity's variance that one input explains on its own, and together with
-    other inputs.
+    """Contribution of one uncertain input to the variance of a quantity.
+
+    Attributes
+    ----------
+    cause : name of the input
+    quantity : name of the quantity
+    first : fraction of the variance that the input explains on its own
+    total : fraction of the variance that the input explains on its own and in combination with
+        other inputs
     """
 
     cause: str
@@ -60,8 +68,9 @@ class Uncertain:
         of the free end [m]
     clamps : (3, 4, m) depth, knockdown, tilt and tension of the m clamps above the anchor
     anchor_tension, required_weight : (3,) anchor tension and required anchor weight [N]
-    contributions : contributions of the inputs to the variance of the top's knockdown; for a
-        surface mooring or an unknown knockdown, of the top's excursion; empty without variance
+    contributions : contributions of the inputs to the variance of the top's knockdown. The
+        excursion of the top replaces the knockdown for a surface mooring, or if the knockdown is
+        undefined. Empty if there is no variance, or if there are too few samples
     unexplained : fraction of this variance that the fit does not explain
     """
 
@@ -141,7 +150,7 @@ def uncertain(
     Parameters
     ----------
     result : result of a mooring whose file defines the `uncertainty` of the inputs
-    samples : a power of two from `FEWEST` to `MOST`
+    samples : a power of two, from `calm.case.draws.FEWEST` to `calm.case.draws.MOST`
     mapped : function that applies the solver to blocks of samples, like `map`
     normals : function that returns `normals_of(samples, seed)`
 
@@ -258,9 +267,9 @@ def sobol_indices(normals: Floats, values: Floats) -> Indices | None:
     """Estimate the Sobol' indices of a quantity from samples, by a fit of Hermite polynomials.
 
     The fit is y = Σ c_a ψ_a(z), where the ψ_a are products of normalised Hermite polynomials. Each
-    c_a² contributes to the variance (Sudret, Reliability Engineering and System Safety 93, 2008,
-    964-979). The first-order index of an input sums the terms of this input alone, the total index
-    all terms with the input.
+    term contributes c_a² to the variance (Sudret, Reliability Engineering and System Safety 93,
+    2008, 964-979). The first-order index of an input is the sum over the terms with this input
+    alone. The total index is the sum over all terms with this input.
 
     Parameters
     ----------

@@ -27,7 +27,7 @@ LARGEST_REYNOLDS = 2e5
 valid.
 """
 BRACKISH = 1010.0
-"""Density of water below which the buoyancy in sea water is noticeably too high [kg/m³]."""
+"""Water density [kg/m³] below which a float has noticeably less buoyancy than in sea water."""
 LARGEST_STRAIN = 0.25
 """Strain near which new nylon fails, and above which no linear stiffness is valid."""
 
@@ -43,8 +43,8 @@ def is_synthetic(component: Component) -> bool:
 def counted_working_load(component: Component) -> float | None:
     """Return the working load used to check a component [N], or None.
 
-    The result for a synthetic rope with a known breaking load is None, because the working load in
-    rope tables is for lifting.
+    For a synthetic rope with a known breaking load, the result is None. Working loads in rope
+    tables are for lifting and are not used.
     """
     if is_synthetic(component) and component.breaking_load is not None:
         return None
@@ -144,10 +144,10 @@ def _stiffness_unknown(result: _Measured, _: Solution) -> Iterator[str]:
 
 
 def unknown_stretch(component: Component, tension: float) -> list[float] | None:
-    """Return the strains of a synthetic rope at a tension, for each published stiffness [-].
+    """Return the possible strains [-] of a synthetic rope with unknown stiffness at a tension.
 
-    The strains decrease. Return None if the component is not a synthetic rope, or if its definition
-    specifies a stiffness.
+    There is one strain for each published stiffness, the largest strain first. Return None if the
+    component is not a synthetic rope, or if its definition specifies a stiffness.
     """
     if not isinstance(component, Cable) or not is_synthetic(component):
         return None
@@ -203,10 +203,10 @@ def _fast_flow(result: _Measured, _: Solution) -> Iterator[str]:
 
 
 def fast_pieces(result: _Measured) -> list[tuple[ComponentRow, float]]:
-    """Return spheres and cylinders with Reynolds numbers above the valid range of the drag
-    coefficient.
+    """List spheres and cylinders whose Reynolds number is above the range of the drag coefficient.
 
-    Each piece has the upper limit of the range. The largest ratio to the limit is first.
+    An item is the row of the piece, and the largest valid Reynolds number. The piece with the
+    largest ratio of the two numbers is first.
     """
     curves = [*result.leg.line.drag_curve, None]
     rows = [
@@ -332,9 +332,10 @@ def _hull_unknown(result: _Measured, solution: Solution) -> Iterator[str]:
 
 
 def buoyancy_of_sea_water(leg: Leg) -> tuple[Piece | Clamp, str] | None:
-    """Return the first float whose buoyancy in fresh water is too high, and a message about it.
+    """Return the first float with too high a buoyancy in fresh water, and a warning; else None.
 
-    Without a displaced volume, the buoyancy of a float does not depend on the density of the water.
+    Catalogue values of buoyancy are for sea water. If the displaced volume of a float is unknown,
+    CALM does not reduce the buoyancy of the float in fresh or brackish water.
     """
     density = float(np.max(leg.water.density))  # at the surface alone, water may be fresher
     if density >= BRACKISH:

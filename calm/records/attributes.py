@@ -142,9 +142,11 @@ def _is_magnetic_text(text: str) -> bool:
 
 
 def sense_of_direction(variable: xr.DataArray) -> str | None:
-    """Return ``"to"`` if a current flows to a direction, and ``"from"`` if a current comes from it.
+    """Return the convention of a direction variable.
 
-    Return None if long name, standard name and comment are silent or contradictory.
+    The convention is ``"to"`` for the direction in which a current flows, and ``"from"`` for the
+    direction from which it comes. Return None if long name, standard name and comment are silent or
+    contradictory.
     """
     own = words_of(variable, "long_name", "standard_name", "comment")
     toward, origin = _TOWARD.search(own), _FROM.search(own)

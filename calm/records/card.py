@@ -16,7 +16,7 @@ from calm.records.current_terms import time_text
 from calm.records.value_tests import gaps_of
 
 LONGEST = 300
-"""Maximum number of characters shown of a text."""
+"""Maximum number of characters of a text in a card."""
 _MOST_GAPS = 20
 _TEXTS = {
     "title": ("title",),

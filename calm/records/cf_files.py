@@ -55,7 +55,10 @@ _KINDS = {
     rb"(?m)^\*IOS HEADER VERSION": "an IOS Shell file; convert it to NetCDF "
     "(`ocean-data-parser` does)",
 }
-"""Bytes near the start of unsupported files that may hold currents, and the remedy."""
+"""Patterns that identify unsupported kinds of files by their first bytes.
+
+Each pattern has the name of the kind, and the advice for the user.
+"""
 _HEAD = 400  # number of bytes searched
 
 _ENGINES = {b"\x89HDF": "h5netcdf", **dict.fromkeys((b"CDF\x01", b"CDF\x02", b"CDF\x05"), "scipy")}
@@ -92,7 +95,7 @@ def is_zarr(path: Path) -> bool:
 
 @contextmanager
 def reading(path: Path) -> Iterator[None]:
-    """Convert the errors that a faulty file causes to InputError."""
+    """Context manager that raises InputError in place of any error caused by a faulty file."""
     try:
         yield
     except (CalmError, TimeChoiceError, ModuleNotFoundError):
@@ -108,7 +111,7 @@ def reading(path: Path) -> Iterator[None]:
 
 @contextmanager
 def opened(path: Path) -> Iterator[xr.Dataset]:
-    """Open a dataset; any error becomes an InputError.
+    """Context manager that opens a dataset, and raises InputError in place of any error.
 
     If the contents cannot be used, the message also lists the variables of the file.
     """
@@ -122,7 +125,7 @@ def opened(path: Path) -> Iterator[xr.Dataset]:
 
 @contextmanager
 def saying_what_it_holds(dataset: xr.Dataset) -> Iterator[None]:
-    """Append a list of the variables of the dataset to the message of any UnreadableError."""
+    """Context manager that appends the list of the variables to the message of UnreadableError."""
     try:
         yield
     except UnreadableError as error:
@@ -262,9 +265,10 @@ def first_present(dataset: xr.Dataset, names: Iterable[str]) -> list[str]:
 
 
 def known_values(variable: xr.DataArray) -> NDArray[np.float64]:
-    """Return the values of a variable in the declared unit, NaN outside the valid range.
+    """Return the values of a variable in the declared unit, with NaN outside the valid range.
 
-    As in the NetCDF User Guide, limits with the type of the packed values refer to packed values.
+    If the limits of the valid range have the integer type of the packed values, they are limits of
+    the packed values (NetCDF User Guide).
     """
     _refuse_many(variable.name, variable.size)
     values = np.array(variable.values, np.float64)

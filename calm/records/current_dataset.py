@@ -227,7 +227,7 @@ class CurrentDataset:
 
 
 def share_of(good: Floats) -> Floats:
-    """Return shares of good pings as fractions; percentages are recognised by a value above 1."""
+    """Return shares of good pings as fractions; shares are percentages if a value is above 1."""
     return good / 100.0 if np.nanmax(good, initial=0.0) > 1.0 else good
 
 
@@ -319,7 +319,8 @@ class ArrayRecord(Record):
     def _window(self, start: int, stop: int) -> tuple[int, int, Levels]:
         """Return start, end and values of a range of profiles that includes `start` to `stop`.
 
-        The range extends to the end of a compressed chunk, which is thus decompressed only once.
+        The range extends to the end of a compressed chunk, so that each chunk is decompressed only
+        once.
         """
         if self._ahead is not None and self._ahead[0] <= start and stop <= self._ahead[1]:
             return self._ahead

@@ -1,7 +1,7 @@
 """Currents from a file of measurements or of a model: NetCDF, zarr or CSV.
 
-A CSV profile has columns `depth[m],u[m/s],v[m/s]` or `depth[m],speed[m/s],toward[deg]`. A CSV
-record begins with a column `time`, with adjacent rows for each time. Levels without a value are
+A CSV profile has columns `depth[m],u[m/s],v[m/s]` or `depth[m],speed[m/s],toward[deg]`. In a CSV
+record, the first column is `time`, and the rows of a time are adjacent. Levels without a value are
 omitted.
 """
 

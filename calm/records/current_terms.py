@@ -28,11 +28,11 @@ class Terms:
     Attributes
     ----------
     water_depth : water depth [m], to convert heights above the seabed; inf if unknown
-    place : position for the nearest column of a gridded file
+    place : position of the mooring; of a gridded file, the nearest column is read
     declination : magnetic declination [degrees], positive to the east, for rotation to true north
     maximum_speed : speed [m/s] above which a current is a mistake
-    on_the_line : whether the file holds instruments on a mooring line. Levels may then be labelled
-        by part of the line, and bad currents keep their flags
+    on_the_line : whether the file holds instruments on a mooring line. If so, levels may have
+        labels of parts of the line instead of depths, and bad currents keep their flags
     """
 
     water_depth: float = inf
@@ -109,8 +109,9 @@ def time_text(time: np.datetime64) -> str:
 def choose_time(times: NDArray[np.datetime64], wanted: str | None) -> tuple[int, str | None]:
     """Return the index of the time nearest to a requested time, and a notice if the times differ.
 
-    Raise TimeChoiceError if the file has no times, if the requested time is outside the record or
-    occurs twice, or if a request is missing.
+    Raise TimeChoiceError if the file has no times, if the requested time is outside the record, or
+    if the nearest time occurs twice. Raise it also if no time is requested, but the file has
+    several times.
     """
     if not len(times):
         raise TimeChoiceError("the file has no times")

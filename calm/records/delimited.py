@@ -32,7 +32,7 @@ GAPS = frozenset({"", "nan", "na", "n/a", "-", "none", "null"})
 """Lower-case cell texts that mark a missing value."""
 
 COMMENT = re.compile(rb"(?m)^([ \t]*#).*")
-"""A comment; its text may have any encoding."""
+"""Pattern of a comment in the bytes of a file. The encoding of comments does not matter."""
 
 NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 _SAMPLE = 200  # lines from which the dialect is found
@@ -262,11 +262,11 @@ def cells_in(text: str) -> list[list[str]]:
 
 
 def dialect_of(lines: Sequence[str], *, words: bool = False) -> Dialect:
-    """Find the separator and the decimal symbol of a table, given lines without blank lines and
-    comments.
+    """Find the separator and the decimal symbol of a table.
 
-    If `words`, blanks do not separate cells. The decimal symbol is a comma if some comma cannot
-    separate thousands and no number has a point.
+    `lines` has neither blank lines nor comments. If `words` is true, blanks do not separate cells.
+    The decimal symbol is a comma if no number has a point, and if a comma is at a position at which
+    it cannot separate thousands.
     """
     best, most = ",", 0
     for separator in _SEPARATORS:
@@ -325,7 +325,10 @@ def abridged(problems: list[Problem]) -> list[Problem]:
 
 
 def _content(lines: Iterable[NumberedLine]) -> Iterator[NumberedLine]:
-    """Yield the lines that are neither empty nor comments; lines of one quoted cell are joined."""
+    """Yield the lines that are neither empty nor comments.
+
+    If a quoted cell continues on further lines, these lines are joined.
+    """
     begun: list[NumberedLine] = []
     for number, line in lines:
         if not begun and (not line.strip() or line.lstrip().startswith("#")):

@@ -31,8 +31,8 @@ def as_files(given: Any, folder: Path, name: str) -> list[str]:
     """Write datasets and tables to a folder, and return the paths of all records.
 
     A dataset needs the contents of a NetCDF record, and a table the columns of a CSV record. The
-    index of a table may hold the times. A mapping from labels to records gives texts
-    ``LABEL=PATH``. `name` is the prefix of the file names.
+    index of a table may hold the times. If `given` is a mapping from labels to records, the texts
+    ``LABEL=PATH`` are returned. `name` is the prefix of the file names.
 
     Raise TypeError if a record is neither a path nor an object of xarray or pandas.
     """

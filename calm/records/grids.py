@@ -27,7 +27,9 @@ REACH = 8
 """Number of columns searched for water on each side of the nearest column."""
 
 FAR = 5.0
-"""Distance above which a record's drift, or its distance from the mooring, is reported [km]."""
+"""Distance [km] above which CALM reports that the position of a record drifts during the record, or
+is far from the mooring.
+"""
 
 _EARTH = 6371.0
 _PLACES = {
@@ -63,11 +65,12 @@ def choose_column(
 ) -> GridColumn:
     """Select the nearest grid column with a current, or the only column.
 
-    `velocity` names two variables, and `time` the dimension of the times. `wanted` is latitude and
-    longitude, needed to choose from several columns.
+    `velocity` has the names of the two velocity variables, and `time` is the name of the time
+    dimension. `wanted` is the position (latitude, longitude), required if the dataset has several
+    columns.
 
-    Raise UnreadableError if the position is missing or outside the grid, if no column nearby has a
-    current, or if the grid is staggered.
+    Raise UnreadableError if the position is missing or outside the grid, if no column near the
+    position has a current, or if the grid is staggered.
     """
     import xarray as xr
 
@@ -167,10 +170,11 @@ def _indices_around(
 
 
 def _nearest(away: Floats) -> NDArray[Any]:
-    """Return the indices of the grid points nearest to a position along an axis, in axis order.
+    """Return the indices of the grid points nearest to a position along an axis.
 
-    `away` has the signed distances from the position [degrees]. At most ``2 REACH + 1`` points are
-    returned, around the globe possibly from both ends.
+    `away` has the signed distances of the grid points from the position [degrees]. At most
+    ``2 REACH + 1`` indices are returned, in order of increasing signed distance. On a global axis
+    of longitudes, the indices may come from both ends of the axis.
     """
     near = np.argsort(np.abs(away), kind="stable")[: 2 * REACH + 1]
     return near[np.argsort(away[near], kind="stable")]
@@ -269,8 +273,8 @@ class SeabedGrid:
     Attributes
     ----------
     latitude, longitude : origin of the mooring coordinates [degrees]
-    reach : half the side of the square around the origin that is read [m]
-    east, north : distances of the point from the origin [m]
+    reach : half the side length of the square of depths to read [m]; the origin is its centre
+    east, north : distances of the point to the east and north of the origin [m]
     """
 
     path: str = field(compare=False)
@@ -303,11 +307,11 @@ class SeabedGrid:
         return grid
 
     def at(self, east: float, north: float) -> SeabedGrid:
-        """Return the grid about another point.
+        """Return a copy of the grid for another point.
 
         Parameters
         ----------
-        east, north : distances of the other point east and north of this point [m]
+        east, north : distances of the new point to the east and north of the present point [m]
         """
         return replace(self, east=self.east + east, north=self.north + north)
 
@@ -342,7 +346,11 @@ class SeabedGrid:
 
     @property
     def _falls(self) -> Floats:
-        """Depth gradients (2, 2) over one node spacing [-]: along east and north, on both sides."""
+        """Depth gradients (2, 2) along the east and the north axis, on both sides of the point [-].
+
+        Each gradient is a mean over one node spacing. Outside the grid, the gradient on the other
+        side of the point is used.
+        """
         step = float(np.diff(_nodes(self.at(-self.east, -self.north))[0]).mean())
         rises = self.deeper(step * np.array([(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)]))
         falls = rises.reshape(2, 2) * np.array([1.0, -1.0]) / step

@@ -28,8 +28,8 @@ _MAGNETIC = re.compile(r"(?i)\s*\bmag(netic)?$")
 def heading(column: str, dimensions: Sequence[str] = ()) -> tuple[str, str]:
     """Split a heading into its name and its unit; a missing unit is empty.
 
-    Units are in brackets. With `dimensions` (keys of `calm.units.DIMENSIONS`), known units are also
-    found without brackets, preferably units of these dimensions.
+    Units are in brackets. If `dimensions` (keys of `calm.units.DIMENSIONS`) are given, known units
+    are also found without brackets. Units of these dimensions take precedence over other units.
     """
     text = " ".join(column.split())
     bracketed = _BRACKETED.fullmatch(text)
@@ -135,8 +135,12 @@ _INFINITE = ("inf", "infinity")
 class NamedColumns:
     """Rows of a table in which the known columns have been identified by name.
 
-    `factors` to SI units (degrees for angles) and `places` in a row are by column name. `rows` are
-    complete, and `others` are the headings of unknown columns.
+    Attributes
+    ----------
+    factors : factor from the unit of each known column to SI (degrees for angles), by column name
+    places : position of each known column in a row, by column name
+    rows : rows with as many cells as the header
+    others : headings of unknown columns
     """
 
     factors: Mapping[str, float]
@@ -181,7 +185,7 @@ def read_named_columns(
     ----------
     known : dimension of each known column by name; spaces in headings are read as underscores
     problems : list to which mistakes are added
-    other_names : known name by alternative name
+    other_names : alternative names of known columns; the values of the mapping are the known names
     """
     header = table.header
     names = [heading(column)[0].lower().replace(" ", "_") for column in header.cells]

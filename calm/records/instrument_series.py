@@ -40,7 +40,7 @@ _ENDINGS = (".nc", ".cnv", ".use", ".microcat", ".rcm")
 _SAID = f"{', '.join(_ENDINGS[:-1])} or {_ENDINGS[-1]}"
 
 INTERPOLATED = 8
-"""Quality flag of interpolated values, which CALM rejects as measurements."""
+"""Quality flag of interpolated values; CALM does not accept these values as measurements."""
 
 _SERIALS = (
     "serial", "serial_number", "SERIAL", "instrument_serial", "instrument_serial_number",
@@ -217,7 +217,7 @@ def _of_file(
 
 
 def with_one_card(series: Sequence[InstrumentSeries]) -> list[InstrumentSeries]:
-    """Return the series of a file, each with the same card, which covers all instruments."""
+    """Return the series of a file with a common card that covers all instruments."""
     cards = [*{id(one.card): one.card for one in series if one.card is not None}.values()]
     if len(cards) < 2:
         return [*series]
@@ -272,7 +272,7 @@ PRESSURE = (
     ("sea_water_pressure_due_to_sea_water", "sea_water_pressure"),
     ("PRES_REL", "PRES", "pressure", "pres"),
 )
-"""Standard and usual names of quantities used to compute others."""
+"""Standard names and usual names of pressure variables."""
 PASCALS_PER_DBAR = 1e4
 _LATITUDE = 45.0  # default; it changes the pressure at a depth by 0.3 % at most
 _FEWEST = 6  # a series of zeros alone is a fault from this length on
@@ -449,9 +449,13 @@ def _decibars(variable: xr.DataArray, values: Floats) -> Floats:
 def named(dataset: xr.Dataset, sought: Sequence[str], usual: Sequence[str]) -> list[str]:
     """Return the names of the variables of a quantity.
 
-    Variables with the first standard name of `sought` in the dataset take precedence, else names in
-    `usual` count. Of several variables with one standard name, those with a usual name are
-    returned. Raise UnreadableError if there are none, or if a usual name belongs to another
+    `sought` lists standard names, the preferred name first. The variables with the first standard
+    name that occurs in the dataset are returned. If no standard name occurs, the variables with the
+    names in `usual` are returned. If several variables have the same standard name, only those with
+    a name in `usual` are returned.
+
+    Raise UnreadableError if several variables have the same standard name, and none has a name in
+    `usual`. Raise UnreadableError also if the first variable found by a usual name has another
     standard name.
     """
     there = _standard(dataset, sought)
@@ -485,7 +489,7 @@ class Readings:
     values : (n, k) values of each variable, in the units of the file
     dropped : (n, k) mask of readings rejected by a flag of any variable
     clock : name and unit of the time variable
-    flags : number of rejected readings by flag variable
+    flags : number of readings that each flag variable rejected
     """
 
     time: NDArray[np.datetime64]
@@ -559,7 +563,8 @@ def card_of(
     Parameters
     ----------
     source : name of the file
-    taken : names of the variables by role, in the order of the readings
+    taken : names of the variables by role, such as temperature, in the order of `found.values`
+    found : values of these variables
     """
     summaries = {}
     for (meaning, name), values in zip(taken.items(), found.values, strict=True):

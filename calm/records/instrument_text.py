@@ -88,7 +88,7 @@ def _dataset(
     latitude: float = math.nan,
     serial: str = "",
 ) -> xr.Dataset:
-    """Build a dataset from columns by (quantity, unit)."""
+    """Build a dataset from columns; the key of a column is (quantity, unit)."""
     import cf_xarray  # noqa: F401  (gives datasets their `cf`)
     import xarray as xr
 

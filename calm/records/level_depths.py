@@ -1,4 +1,7 @@
-"""Depths of current levels, which a file may give as heights or distances from an instrument."""
+"""Depths of current levels.
+
+A file may give depths, heights above the seabed, or distances from an instrument.
+"""
 
 from __future__ import annotations
 
@@ -37,12 +40,15 @@ _STANDARD_DEPTH = "depth"
 class LevelDepths:
     """Levels of a current at depths ``start + factor * variable``, positive down [m].
 
+    If `instrument` is set, the depth of the instrument is added.
+
     Attributes
     ----------
     variable : level variable; its dimensions are dimensions of the velocity
     factor : signed factor to metres; negative if values increase upwards
     start : depth at which the values are zero [m]
-    instrument : depth variable of an instrument, and its factor to metres; this depth is added
+    instrument : depth variable of an instrument, and the factor to metres; None for levels that are
+        not relative to an instrument
     """
 
     variable: xr.DataArray

@@ -23,14 +23,16 @@ _LEAST_REVERSED = 0.05
 """Minimum speed of a current with a reliable direction [m/s]."""
 
 _AT_THE_BED = 0.98
-"""Share of the water depth below which a level counts as at the seabed."""
+"""Fraction of the water depth; levels at or below this depth count as levels at the seabed."""
 
 _SHELF, _DEEP = 200.0, 1000.0
 _FASTEST = {_SHELF: 3.0, _DEEP: 1.5}
-"""Maximum current in water deeper than 200 m, and below 1000 m [m/s].
+"""Maximum plausible current [m/s] in two cases: in water deeper than 200 m, and at depths below
+1000 m.
 
-The Florida Current and the Agulhas reach 2.5 m/s, overflows 1.3 m/s at 600 to 1400 m. Tidal races
-are shallower."""
+The Florida Current and the Agulhas Current reach 2.5 m/s. Overflows reach 1.3 m/s at 600 to 1400 m.
+Tidal races occur in shallower water only.
+"""
 
 
 def direction_doubts(directions: Sequence[float], name: str) -> Iterator[str]:

@@ -367,7 +367,7 @@ def read_water(
     """Read a profile of density [kg/m³], or of temperature and salinity, from a table.
 
     Return None and record the problems if the table has mistakes. Columns are `depth`, and
-    `density` or `temperature` and `salinity`.
+    either `density`, or both `temperature` and `salinity`.
     """
     values = _profile_by_name(table, {**_WATER, "density": density})
     if values is None:

@@ -95,8 +95,8 @@ class Record(ABC):
 def parse_period(text: str) -> Period:
     """Parse a period ``A/B`` of ISO 8601 times.
 
-    A year, month or day B is included as a whole. Either end may be open, as in ``2026-03/`` or
-    ``../2026-03-31``. Raise UsageError if the period is invalid.
+    If B is a year, a month or a day, the period includes it completely. Either end may be open, as
+    in ``2026-03/`` or ``../2026-03-31``. Raise UsageError if the period is invalid.
     """
     first, slash, last = text.partition("/")
     if not slash:
@@ -129,8 +129,8 @@ def choose_profiles(
 ) -> tuple[Index, tuple[str, ...]]:
     """Return the indices of the profiles to read, in order of time, and notices on the choice.
 
-    `times` (n,) are in file order. `period` is None for all times. Every n-th profile is read, with
-    n in `every`.
+    `times` (n,) are in file order. `period` is None for all times. If `every` is n, every n-th
+    profile is read.
 
     Raises
     ------
@@ -169,12 +169,12 @@ def choose_profiles(
 
 
 def part(index: Index, start: int, stop: int) -> Index:
-    """Return the file indices of some of the chosen profiles.
+    """Return the file indices of the chosen profiles from number `start` to number `stop`.
 
     Parameters
     ----------
-    index : file indices of all chosen profiles
-    start, stop : positions among the chosen profiles; `stop` is excluded
+    index : file indices of all chosen profiles, from `choose_profiles`
+    start, stop : numbers of chosen profiles, counted from 0; `stop` is excluded
     """
     if not isinstance(index, slice):
         return index[start:stop]
@@ -210,7 +210,10 @@ START = "2026-03-01T00:00:00"
 LATITUDE, LONGITUDE = 48.3, -5.2
 
 RESOLUTION = 1e-3
-"""Resolution of the currents [m/s], which hides differences of sines between platforms."""
+"""Resolution of the currents [m/s].
+
+The currents are rounded, because platforms compute slightly different sines.
+"""
 
 _SEABED = 300.0
 # period [h], to the east and to the north [m/s], phase [degrees]; M2, S2, K1

@@ -23,10 +23,13 @@ OF_HEIGHT = ("pierson-moskowitz", "ochi-hubble")
 """Names of the spectra that follow from the significant height alone."""
 
 STEEPEST = 1.0 / 7.0
-"""Ratio of height to length of a breaking wave (Michell 1893); seas are far below it."""
+"""Height of a breaking wave divided by the wavelength (Michell 1893)."""
 
 HIGHEST, LONGEST_PERIOD = 30.0, 30.0
-"""Limits above all measured significant heights [m] (19 m by a buoy, WMO 2016) and periods [s]."""
+"""Largest accepted significant height [m] and peak period [s].
+
+Both limits exceed all measured values. The highest sea measured by a buoy had 19 m (WMO 2016).
+"""
 
 BETWEEN = 0.5, 12.0
 """Frequency range of the solution, as multiples of the peak frequency.
@@ -38,13 +41,16 @@ UNSEEN = 1e-3
 """Share of the variance of a measured sea that may lie below the frequencies of the solution."""
 
 PEAK_BY_MEAN = "Tp is 1.41 times the mean zero-crossing period Tz, or 1.29 Tz for jonswap"
-"""Ratios of the peak period to Tz, from the spectral moments: 1.408, and 1.286 for jonswap."""
+"""Advice for users who have Tz instead of Tp, for messages.
+
+The ratios Tp/Tz follow from the spectral moments: 1.286 for jonswap, and 1.408 for other spectra.
+"""
 
 SHARES = 0.02
-"""Tolerance for the sum of shares of time, which may be rounded."""
+"""Tolerance for the sum of the shares in a scatter table; the shares may be rounded."""
 
 CUT_OFF = 0.5
-"""Largest density of a measured spectrum at its last frequency, as a share of the maximum."""
+"""Largest accepted density at the last frequency of a measured spectrum, relative to the peak."""
 
 _STANDARD_NAMES = (
     "sea_surface_wave_variance_spectral_density",
@@ -56,9 +62,10 @@ LARGEST_FREQUENCY = 10.0
 """Highest angular frequency of the solution [rad/s]."""
 
 SHORTEST_PERIOD, BEYOND = 2.0, 0.02
-"""Shortest peak period [s], and largest share of a measured sea above `LARGEST_FREQUENCY`.
+"""Shortest accepted peak period [s], and largest accepted share of the variance of a measured sea
+above `LARGEST_FREQUENCY`.
 
-A sea of the shortest period has a hundredth of its variance above that frequency.
+A sea with the shortest peak period has 1 % of its variance above `LARGEST_FREQUENCY`.
 """
 
 
@@ -86,8 +93,9 @@ class SeaState:
     peak_period : Tp [s]
     density : one-sided spectrum of the elevation [m² s/rad] over angular frequency [rad/s]
     share : fraction of time of this sea state in a set
-    longest, shortest : longest and shortest peak period of several components [s]. In a measured
-        sea, `longest` makes `frequencies` begin at the lowest frequency with energy
+    longest, shortest : longest and shortest peak period of a sea with several components [s]. For a
+        measured sea, `longest` is the period that sets the first value of `frequencies` to the
+        lowest frequency with energy
     """
 
     significant_height: float
@@ -98,7 +106,7 @@ class SeaState:
     shortest: float | None = None
 
     def severity(self) -> tuple[float, float]:
-        """Return a sort key: the higher sea, or the steeper of two equally high seas, is larger."""
+        """Return a key to sort seas by height, and seas of equal height by steepness."""
         return self.significant_height, -self.peak_period
 
     @property

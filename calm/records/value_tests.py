@@ -22,20 +22,21 @@ from calm.units import KNOT
 Times = NDArray[np.datetime64]
 
 UNCOVERED, FEW = 0.1, 25.0
-"""Share of the water depth, and length [m]; the larger of the two is the tolerance for levels.
+"""Tolerance for the depths of levels, as a fraction of the water depth and as a length [m].
 
-A profile may omit this length at either end, and a level may be this far below the seabed.
+The larger of the two lengths applies. A profile may omit this length at its upper and lower end,
+and a level may be this far below the seabed.
 """
 WEAK = 0.03
 """Speed [m/s] that the strongest current of every record exceeds."""
 MANY = 50
-"""Smallest sample for which a coincidence is ruled out."""
+"""Least number of values for which a pattern in the values is not a coincidence."""
 SECTOR = 40.0
 """Angle [degrees]: directions that all lie between north and this angle are probably in radians, or
 in tens of degrees.
 """
 UNCHANGED = 0.1
-"""Share of a record beyond which a series with a constant value is doubtful."""
+"""Fraction of a record. A constant value, or gaps, over a larger fraction are reported."""
 _FEWEST = 6  # least number of equal readings for a doubt
 _STRETCH = 24  # readings of a repeated stretch
 _SLOWEST = np.timedelta64(3, "h")  # at longer steps, a tide looks like two interleaved series
@@ -243,8 +244,8 @@ _ALIKE, _UNLIKE = 0.8, 0.5
 def _turned_levels(depth: Floats, current: NDArray[np.complex128]) -> Iterator[str]:
     """Report levels whose currents match both neighbours only after a rotation or a reflection.
 
-    Depths (k,) [m] increase. Currents (n, k) [m/s] have an eastward real and a northward imaginary
-    part.
+    Depths (k,) [m] increase. Currents (n, k) [m/s] are complex numbers: the real part is eastward,
+    the imaginary part is northward.
     """
     turned = []
     for i in range(1, len(depth) - 1):
@@ -334,7 +335,7 @@ WATER = {
         "kg/kg": (1e3, 0.0), "mS/cm, as a conductivity": (0.7, 0.0), "0.001": (1e-3, 0.0),
     }),
 }  # fmt: skip
-"""The limits of TEOS-10, as in tables of mooring files."""
+"""Limits of temperature and salinity: the range of validity of TEOS-10."""
 _FRACTION = 0.05  # most salinities lie below this if they are mass fractions
 
 
@@ -485,7 +486,7 @@ def _interleaved(values: Floats) -> Iterator[str]:
 
 
 def _repeated(values: Floats, times: Times) -> Iterator[str]:
-    """Report the longest run of readings that occurs twice with equal digits."""
+    """Report the longest sequence of readings that occurs twice with exactly equal values."""
     count = len(values) - _STRETCH + 1
     if count <= _STRETCH:
         return

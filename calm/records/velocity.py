@@ -70,8 +70,8 @@ class Velocity:
     ----------
     names : eastward and northward velocity, or speed and direction
     up : upward velocity; None if missing
-    turn : angle to add to the direction variable for the direction of flow [degrees]; None for
-        components
+    turn : angle to add to the direction variable to obtain the direction of flow [degrees]; None if
+        `names` are components
     magnetic, true : whether the file states that directions refer to magnetic or to true north
     """
 
@@ -350,8 +350,8 @@ _GOOD_NAMES = re.compile(r"(?i)(perg|pg|pgd|percent_?good|prcnt_gd|pct_good)_?[1
 def good_variables(dataset: xr.Dataset, name: str) -> list[xr.DataArray]:
     """Return the variables whose sum is the share of good pings for a velocity.
 
-    Of four beams, only the first and fourth values are returned. In earth coordinates, the first
-    value counts three-beam and the fourth four-beam solutions.
+    If a variable has four values for four beams, only the first and the fourth value are returned:
+    the shares of three-beam and of four-beam solutions in earth coordinates.
     """
     dims = set(dataset[name].dims)
     there = [

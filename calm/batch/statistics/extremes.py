@@ -36,8 +36,8 @@ season.
 """
 
 LEAST_PEAKS = 30
-"""Number of independent peaks required for POT. Choice of CALM: the intervals hold for many peaks;
-with fewer peaks they contain the true level less often than stated.
+"""Number of independent peaks required for POT. Choice of CALM: confidence intervals from few peaks
+contain the true return level less often than stated.
 """
 
 THRESHOLDS = (99.0, 98.0, 97.0, 96.0, 95.0, 94.0, 93.0, 92.0, 91.0, 90.0)
@@ -59,8 +59,8 @@ class Level:
 
     Attributes
     ----------
-    period : return period T [years]. The annual maximum (GEV) exceeds the level in one of T years,
-        a peak (POT) once in T years, on average
+    period : return period T [years]. On average, one in T annual maxima exceeds the level (GEV), or
+        one peak exceeds the level in T years (POT)
     low, high : ends of the confidence interval; None if the data do not determine an end
     """
 
@@ -80,7 +80,7 @@ class Fit:
     location, scale, shape : μ, σ and ξ; for POT, the location is the threshold
     count, rate : number of fitted maxima or peaks, in total and per year
     rules : description of the selection of maxima or peaks
-    levels : for the `PERIODS` that the record allows
+    levels : return levels for those `PERIODS` that the length of the record allows
     """
 
     method: str
@@ -106,8 +106,9 @@ def return_levels(
 ) -> tuple[Fit | LevelsRefused, Fit | LevelsRefused]:
     """Compute return levels with 95 % intervals, first by GEV and then by POT.
 
-    A method without levels returns the reason. Levels require that all profiles with a current are
-    solved, except in weak currents (`calm.batch.statuses.IN_WEAK_CURRENT`).
+    Return a `Fit` for each method, or the reason why the method has no return levels. Return levels
+    require a solution for every profile with a current, except for profiles in weak currents
+    (`calm.batch.statuses.IN_WEAK_CURRENT`).
 
     Parameters
     ----------
@@ -249,8 +250,8 @@ def _fit_with_levels(
 
 
 WHOLE = 0.9
-"""Smallest fraction of profiles in a year that counts as whole. Choice of CALM: five missing weeks
-seldom hide the annual maximum, but a missing season may.
+"""Fraction of the profiles of a year that a complete year must have. Choice of CALM: five missing
+weeks seldom hide the annual maximum, but a missing season may.
 """
 
 YEAR = np.timedelta64(31_557_600, "s")
@@ -258,15 +259,14 @@ YEAR = np.timedelta64(31_557_600, "s")
 
 
 def years_of(step: np.timedelta64, count: int) -> float:
-    """Return the time represented by `count` profiles, each of which represents one median step
-    [years].
-    """
+    """Return the time represented by `count` profiles [years]; a profile represents one `step`."""
     return count * float(step / YEAR)
 
 
 def median_step(time: Times) -> np.timedelta64:
-    """Return the median time between profiles, which is not affected by gaps. For a single profile,
-    the median is zero.
+    """Return the median time between successive profiles; for a single profile, return zero.
+
+    A few gaps in the record do not change the median.
     """
     if len(time) < 2:
         return np.timedelta64(0, "ns")
@@ -279,10 +279,10 @@ def median_step(time: Times) -> np.timedelta64:
 def annual_maxima(
     time: Times, values: Column, step: np.timedelta64
 ) -> tuple[NDArray[np.float64], int]:
-    """Return the maximum of every complete year, and the number of all years.
+    """Return the maximum of every complete year, and the number of complete and incomplete years.
 
-    Years of 365.25 days are counted from the first profile. A complete year has at least the
-    fraction `WHOLE` of the possible values.
+    Years of 365.25 days are counted from the first profile. In a complete year, at least the
+    fraction `WHOLE` of the time steps has a value.
     """
     years = int((time[-1] - time[0]) // YEAR) + 1
     starts = np.searchsorted(time, time[0] + np.arange(years + 1) * YEAR)
@@ -299,7 +299,7 @@ def peaks_over(
 
     With N exceedances and the extremal index θ, the θN - 1 longest intervals between exceedances
     separate the clusters (Ferro and Segers 2003, eq. 6 and section 3). Exceedances in successive
-    time steps are never separated. An interval across a gap in the record counts in full.
+    time steps are never separated. Gaps in the record count as parts of the intervals.
     """
     over = np.flatnonzero(values > threshold)
     if len(over) < 2:

@@ -37,10 +37,10 @@ class CountedLimit:
 
     Attributes
     ----------
-    leg : leg to which the criterion applies; lower bounds of estimates replace values missing from
-        the catalogue
-    columns : column numbers of the leg in the batch result, if there are several legs
-    on_estimate : whether the limit is such a lower bound; a value beyond the limit is then not
+    leg : leg to which the criterion applies. Values missing from the catalogue are estimated; the
+        lower bound of each estimate is used
+    columns : columns of the leg in the batch result of a net; None for a single line
+    on_estimate : whether the limit depends on an estimate. A value beyond such a limit is not
         necessarily a failure
     """
 
@@ -188,9 +188,9 @@ class Exceedance:
 
     Attributes
     ----------
-    count : number of profiles in which the limit can be evaluated. If the limit is an estimate,
-        profiles beyond the limit do not count
-    share : fraction of these profiles that exceed the limit
+    count : number of profiles in which the limit can be evaluated. If the limit depends on an
+        estimate, profiles beyond the limit are not counted
+    share : fraction of the counted profiles that exceed the limit
     worst, time : most unfavourable value, and its time; None if `count` is 0
     """
 
@@ -208,8 +208,8 @@ class RuleShare:
     Attributes
     ----------
     judged : number of profiles in which at least one limit of the rule is evaluated
-    fails, warns : fractions of these profiles that fail, and that warn but do not fail; None if
-        `judged` is 0
+    fails : fraction of the judged profiles in which the rule fails; None if `judged` is 0
+    warns : fraction of the judged profiles in which the rule warns but does not fail, or None
     fails_at_most : upper bound of `fails`: unsolved profiles with a current count as failures
     unknown : number of limits that no profile can evaluate, usually because a value is missing
     """
@@ -284,8 +284,10 @@ def _rule_share(
 def _exceedance(
     series: ResultColumns, limit: CountedLimit, beyond: NDArray[np.bool_], judged: NDArray[np.bool_]
 ) -> Exceedance:
-    """Compute how often a limit is exceeded. Profiles beyond the limit are marked in `beyond`,
-    profiles with a value in `judged`.
+    """Compute how often a limit is exceeded.
+
+    The function sets `beyond` (n,) for profiles beyond the limit, and `judged` (n,) for profiles in
+    which the limit can be evaluated.
     """
     if limit.criterion.limit is None:
         return Exceedance(limit, 0, None, None, None)

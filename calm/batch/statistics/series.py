@@ -1,4 +1,4 @@
-"""Columns of a batch result, of which only one is in memory at a time."""
+"""Columns of a batch result. Only one column is in memory at a time."""
 
 from __future__ import annotations
 
@@ -121,7 +121,7 @@ class ResultColumns:
         return len(self.time)
 
     def of_leg(self, leg: LegColumns) -> ResultColumns:
-        """Return the columns of one leg of a net, which share the temporary file of the whole
+        """Return the columns of one leg of a net. They share the temporary file of the whole
         result.
         """
         view, ends = copy(self), slice(leg.number, leg.number + 1)

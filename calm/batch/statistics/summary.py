@@ -70,8 +70,8 @@ class Response:
     Attributes
     ----------
     distribution : distribution over the profiles; None if there are no values
-    begin, low, high : start, minimum and maximum of each time interval in the plot; minimum and
-        maximum are NaN without values
+    begin : start of each time interval in the plot
+    low, high : minimum and maximum in each interval; NaN if the interval has no values
     return_levels : return levels by GEV and by POT
     """
 
@@ -361,8 +361,8 @@ class Distribution:
     percentiles : values at `PERCENTILES`; the p quantile has the rank 1 + (n - 1) p (definition 7
         of Hyndman and Fan 1996)
     maximum, time : the maximum, and its first time
-    share, value : exceedance curve: a fraction `share` of the profiles reaches or exceeds `value`.
-        The shares are 1/n and all `SHARES` above 1/n
+    share, value : points of the exceedance curve; in a fraction `share` of the profiles, the
+        quantity reaches or exceeds `value`. The shares are 1/n, and all `SHARES` above 1/n
     """
 
     count: int
@@ -403,11 +403,10 @@ def distribution_of(values: Column, time: Times) -> Distribution | None:
 
 
 def envelope_of(values: Column, time: Times) -> tuple[Times, Column, Column]:
-    """Divide the record into `MOST_INTERVALS` intervals, and return their start times and extreme
-    values.
+    """Divide the record into `MOST_INTERVALS` intervals with equal numbers of profiles.
 
-    The intervals contain equal numbers of profiles. In a shorter record, each profile is an
-    interval.
+    If the record has fewer profiles, each profile is an interval. Return the start time, the
+    minimum and the maximum of each interval.
     """
     count = min(len(values), MOST_INTERVALS)
     begin = np.unique(np.linspace(0, len(values), count, endpoint=False).astype(np.int64))

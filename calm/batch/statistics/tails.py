@@ -85,7 +85,7 @@ class Tail:
         return _end(excess, estimate, -spread), _end(excess, estimate, spread)
 
     def _profile(self, level: float, growth: float) -> float:
-        """Return the minimum loss over all distributions with a given return level."""
+        """Return the least negative log-likelihood of all distributions with a return level."""
         if not self.maxima:
 
             def of_shape(free: Floats) -> float:
@@ -155,7 +155,8 @@ def _grown(shape: float, growth: float) -> float:
 def _loss(values: Floats, location: float, scale: float, shape: float, maxima: bool) -> float:
     """Return the negative log-likelihood, which is infinite if a value is impossible.
 
-    With s = log(1 + ξ (x - μ)/σ)/ξ, a value adds log σ + (1 + ξ) s; a maximum adds e^{-s} more.
+    Let s = log(1 + ξ (x - μ)/σ)/ξ. The term of a peak x is log σ + (1 + ξ) s. The term of a maximum
+    x is log σ + (1 + ξ) s + e^{-s}.
     """
     if not (SHAPES[0] < shape < SHAPES[1] and scale > 0.0):
         return inf
@@ -188,8 +189,10 @@ def _minimise(loss: Callable[[Any], float], *starts: list[float]) -> tuple[Float
 
 
 def _end(excess: Callable[[float], float], estimate: float, step: float) -> float | None:
-    """Find the root of a function that is negative at the estimate, in the direction of `step`;
-    None if it is too far away.
+    """Find the end of a confidence interval, a root of `excess`.
+
+    `excess` is negative at the estimate. The search goes from the estimate in the direction of
+    `step`. Return None if the root is too far from the estimate.
     """
     from scipy.optimize import brentq
 
