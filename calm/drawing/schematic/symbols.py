@@ -51,8 +51,8 @@ LINES = (Symbol.CHAIN, Symbol.WIRE, Symbol.ROPE)
 class Sign:
     """A symbol and the number of its repetitions.
 
-    `sounding` is true if the symbol contains an ADCP; `up` and `down` are true if the ADCP looks in
-    these directions.
+    `sounding` is true if the symbol contains an ADCP. `up` is true if the ADCP looks up, and `down`
+    is true if the ADCP looks down.
     """
 
     symbol: Symbol
