@@ -30,7 +30,8 @@ _ROWS = 6
 _DEEPER = 0.5
 """Minimum extra depth for which the drop plan lists a component without an instrument [m].
 
-The extra depth is the maximum depth during the descent minus the depth in equilibrium.
+The extra depth is the maximum depth during the descent minus the depth in equilibrium. A component
+that sinks below its depth rating is always listed.
 """
 _REPRESENTED = 0.02
 """Initial fraction of the fall time in which the fall speed is not drawn.

@@ -38,7 +38,7 @@ from calm.report.page_one import (
 )
 
 _OTHER_KIND = ("slack",)
-"""Rules omitted from the matrix, because their utilisation is not the used part of a limit."""
+"""Rules omitted from the matrix, because their utilisation is not the used part of a capacity."""
 _MOST_ENVIRONMENTS = 12
 _NEAR = 0.9
 

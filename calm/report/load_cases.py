@@ -105,7 +105,10 @@ class LoadCase:
 
     @property
     def offset(self) -> float:
-        """Maximum horizontal distance of the top of a line from its anchor [m]."""
+        """Horizontal distance of the top of the line from its anchor [m].
+
+        For a net, this is the maximum over all legs, measured from the origin of the net.
+        """
         return max(hypot(one.top.x, one.top.y) for one in self.results)
 
     @cached_property

@@ -18,9 +18,9 @@ from rich.cells import cell_len
 from textual.driver import Driver
 
 Cell = tuple[str, str]
-"""A character and its style, as SGR codes (ECMA-48).
+"""A character and the SGR codes of its style (ECMA-48).
 
-A wide character has a second cell without a character.
+A wide character is followed by a cell without a character.
 """
 
 _TOKEN = re.compile(
@@ -45,7 +45,10 @@ _PLAIN = "\x1b[0m"
 _WHERE = "\x1b[6n"  # request of the cursor position (ECMA-48)
 _PATIENCE = 3.0  # seconds to wait for an answer
 _GAP = 8
-"""Minimum length of a run of unchanged cells that is skipped, as a shorter run costs little."""
+"""Maximum number of unchanged cells between changed cells that are sent again.
+
+Skipping so few cells would not save output.
+"""
 
 
 class Painted:
