@@ -81,9 +81,9 @@ def elevation(
 ) -> tuple[str, float]:
     """Draw the elevation of the mooring as SVG; also return the scale of the axes [m per point].
 
-    All load cases are projected onto one vertical plane. This plane and the thick line are those of
-    the first load case. The labels are on the right, in order of depth. If a wide mooring leaves no
-    space for labels, the parts are only marked on the line.
+    All load cases are projected onto one vertical plane. The first load case determines this plane,
+    and is drawn as a thick line. The labels are on the right, in order of depth. If a wide mooring
+    leaves no space for labels, the parts are only marked on the line.
     """
     width, height = size
     page = picture(width, height, title)

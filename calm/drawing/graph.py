@@ -63,7 +63,9 @@ def covering(*values: ArrayLike, margin: float = _MARGIN) -> Scale:
 
 
 def to_one_scale(across: Scale, up: Scale, width: float, height: float) -> tuple[Scale, Scale]:
-    """Widen the narrower range about its middle, so that both axes have the same scale.
+    """Return both scales, with equal lengths per point; the range that is too short is widened.
+
+    The middle of the range does not change.
 
     Parameters
     ----------

@@ -24,7 +24,7 @@ SIGNS = {
     "release": ("D", 5.0, "#009e73"),
     "anchor": ("v", 6.0, "black"),
 }
-"""Form, size [pt] and colour of the mark for a role."""
+"""Form, size [pt] and colour of the mark for each role of a component."""
 
 STROKES = {
     LineKind.LINE: Stroke(LINE_COLOUR, 1.4),

@@ -163,7 +163,7 @@ def from_the_side(
 
 
 def _seabeds(result: AnyResult) -> Iterator[Polyline]:
-    """Yield seabed lines for anchors on a slope, and for anchors above the deepest seabed."""
+    """Yield lines of the seabed at anchors on a slope, and at anchors above the deepest seabed."""
     plane, legs = plane_of(result), result.legs
     drawn = np.concatenate([along(leg.shape.x, leg.shape.y, plane) for leg in legs])
     stand = [leg for leg in legs if leg.leg.anchored]

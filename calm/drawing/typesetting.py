@@ -29,8 +29,8 @@ def typeset(
 ) -> bytes:
     """Typeset a typst template; a PNG contains only the first page.
 
-    `inputs` are texts in `sys.inputs`, not interpreted as markup. `timestamp` is the PDF date in
-    seconds since 1970, or None for no date.
+    The template reads `inputs` from `sys.inputs`, as plain text without markup. `timestamp` is the
+    PDF date in seconds since 1970, or None for no date.
     """
     import typst
 

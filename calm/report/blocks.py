@@ -140,7 +140,10 @@ class Figure:
 
 @dataclass(frozen=True)
 class Span:
-    """Part of a sentence, in the colour of a state or, if `quiet`, styled as secondary text."""
+    """Part of a sentence, in the colour of a state.
+
+    If `quiet` is true, the part has the style of secondary text.
+    """
 
     text: str
     state: State | None = None

@@ -1,14 +1,13 @@
 """Chart of cables in a uniform current for one value of K, on an A4 page.
 
-K is the ratio of drag to weight in `calm.analytic.chart_branch`. The chart has one main curve, with
-ticks at values of the angle φ and of the arc length s′. Any piece of the main curve is the shape of
-a cable, with its lower end A and its upper end B.
+K is the drag parameter from `calm.analytic.chart_branch`. The chart has one main curve, with ticks
+at values of the angle φ and of the arc length s′. Any piece of the main curve is the shape of a
+cable, with the lower end A and the upper end B.
 
-A second system of curves helps to find the piece. Each cable is also a point P, with the y′ of A
-and the z′ of B as its coordinates. Each curve of a family connects points P with the same ratio.
-The three ratios are L/H, D/H and T_A/(wH). L is the length of the cable. D is the horizontal
-distance and H the vertical distance from A to B. T_A is the tension at A, and w the weight per
-metre.
+Each cable is also a point P in the chart. The coordinates of P are y′ of A and z′ of B. Further
+curves connect points P that have the same ratio L/H, D/H or T_A/(wH). L is the length of the cable.
+D is the horizontal distance and H the vertical distance from A to B. T_A is the tension at A, and w
+the weight per metre.
 """
 
 from __future__ import annotations
@@ -147,9 +146,9 @@ def _point_at(points: CurvePoints, scale: Floats, value: float) -> tuple[float, 
 def _draw_family(
     axes: Axes, labels: Labels, family: Family, points: CurvePoints, starts: NDArray[np.bool_]
 ) -> None:
-    """Draw a family of curves, each of which connects points P with the same ratio.
+    """Draw a family of curves. Each curve connects the points P with the same ratio.
 
-    The curves are contour lines of the ratio. The coordinates are y′ of A and z′ of B.
+    The curves are contour lines of the ratio, as a function of y′ of A and z′ of B.
     """
     # Equal steps in φ are small steps in y′ where the curve turns back; contours need rising y′.
     angles = np.linspace(points.phi[starts][0], points.phi[starts][-1], _POINTS)
@@ -230,8 +229,8 @@ class Labels:
     def tick(self, x: float, y: float, angle: float, size: float, colour: str) -> None:
         """Draw a tick at a point of a curve.
 
-        `angle` is the direction of the curve at this point [rad]. The tick is on the right of a
-        person who looks in this direction. If `size` [pt] is negative, the tick is on the left.
+        `angle` is the direction of the curve at this point [rad]. Seen in this direction, the tick
+        is on the right of the curve. If `size` [pt] is negative, the tick is on the left.
         """
         place, right = self._pixel_and_normal(x, y, angle)
         ends = np.array([place, place + right * size * self._points])

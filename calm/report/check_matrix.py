@@ -38,7 +38,11 @@ from calm.report.page_one import (
 )
 
 _OTHER_KIND = ("slack",)
-"""Rules omitted from the matrix, because their utilisation is not the used part of a capacity."""
+"""Rules omitted from the matrix.
+
+The utilisation of `slack` is the required minimum tension divided by the actual tension. It is not
+comparable with the used part of a strength.
+"""
 _MOST_ENVIRONMENTS = 12
 _NEAR = 0.9
 

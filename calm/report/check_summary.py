@@ -118,7 +118,10 @@ def _cases(assessment: Assessment) -> Iterator[blocks.Block]:
 
 
 def _case_text(case: LoadCase, cases: Sequence[LoadCase]) -> str:
-    """Describe a load case briefly; later cases of an environment do not repeat its name."""
+    """Describe a load case briefly.
+
+    The first case of an environment includes the name of the environment.
+    """
     if case.situation in (STILL, STILL_LOW):
         return case.situation
     own = brief = case.environment

@@ -124,8 +124,8 @@ _COLUMNS = {
 """Columns of each sheet, each as ``heading=attribute``.
 
 A heading without ``=`` is also the name of the attribute. A column with ``=-`` is filled in by
-hand. If the first column has no attribute after ``=``, each item is paired with the value of this
-column.
+hand. The first column may have no attribute, as in ``number=``. The items are then pairs of the
+value in this column and an object with the other attributes.
 """
 
 

@@ -78,7 +78,10 @@ def short(text: str, most: int) -> str:
 
 
 def figure_text(finding: Finding, name: Literal["value", "limit"] = "value") -> str:
-    """Format the value or the limit of a finding, in a unit that suits both; "" if unknown."""
+    """Format the value or the limit of a finding; "" if unknown.
+
+    Value and limit have the same unit, which depends on both.
+    """
     value, quantity = getattr(finding, name), QUANTITIES.get(RULES[finding.rule].quantity)
     if value is None or quantity is None:
         return ""

@@ -249,7 +249,8 @@ def degrees_text(degrees: float, sides: str, digits: int) -> str:
 def inputs_part(inputs: Sequence[tuple[str, MooringFile, Water]]) -> ReportPart:
     """Report the inputs: environments, mooring file, currents, hash and versions.
 
-    `inputs` are tuples of the name of an environment, the mooring file and the water.
+    Each of `inputs` is the name of an environment, the mooring file, and the water in this
+    environment.
     """
     files = [file for _, file, _ in inputs]
     waters = list({name: water for name, _, water in reversed(inputs)}.items())[::-1]

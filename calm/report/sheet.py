@@ -338,7 +338,7 @@ def leg_titles(result: Result) -> dict[str, str]:
 def end_descriptions(line: LegResult) -> tuple[str | None, str | None]:
     """Describe the connections of the upper and the lower end of a leg.
 
-    A free upper end and a lower end with an anchor have no description, but None.
+    The result for a free upper end, or for a lower end with an anchor, is None.
     """
     top, bottom = line.leg.top, line.leg.bottom
     return (

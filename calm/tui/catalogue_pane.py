@@ -212,9 +212,8 @@ class CataloguePane(Vertical):
         """Open the search for a component.
 
         Until the user types, the favourites are first in the list. Components with the given role
-        are next, followed by recent components and components of the line. `target` is the name of
-        the line row that the title shows. `clampable` limits the list to components that can be
-        clamped on.
+        are next, followed by recent components and components of the line. `target` is the row name
+        in the title of the pane. `clampable` limits the list to components that can be clamped on.
         """
         self.purpose, self.clampable, self._role = purpose, clampable, role
         self.retitle(target)

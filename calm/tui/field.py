@@ -23,7 +23,7 @@ from calm.tui.key_table import bindings
 
 
 class ScrolledEntry(Input):
-    """Text input that ignores a paste of several lines, so that a parent widget handles the paste."""
+    """Text input that passes a paste of several lines to its parent widget."""
 
     virtual_size = Reactive(Size(0, 0), repaint=False)
 

@@ -205,7 +205,10 @@ class LineCell:
             self.workspace.session.put({self.spot: given}, f"change the {name}")
 
     def values_of(self, text: str) -> dict[str, Value | None]:
-        """Return the new values of the keys that a text changes in the row; None deletes a key."""
+        """Return the changes to the row after a text is entered, as new values by key.
+
+        The value None deletes a key.
+        """
         written = self._values
         if text == self.text:
             return {}

@@ -55,8 +55,7 @@ class View:
         replaced by an anchor that holds any load.
     failure : reason why the line has no equilibrium
     findings : findings of the design check; empty for a tow
-    tighter : further findings, from other situations. Their utilisation is larger than that of the
-        same finding in `findings`.
+    tighter : findings in other situations, if their utilisation is larger than in `findings`
     environments : names of the environments besides the default environment
     rows : results of each piece and clamp in file order; clamps follow their piece
     complete : whether `findings` has all findings of `calm check`; true for a solved tow
@@ -163,8 +162,8 @@ def judge_fully(view: View, catalogs: Sequence[str | Path] = ()) -> View:
 class HeldLine:
     """A line solved in one environment and situation, with an anchor that holds any load.
 
-    `when` is the name of the environment and of the situation. It omits the environment of the
-    view, and the situation as given.
+    The text `when` names the environment, unless it is the environment of the view. The text also
+    names the situation, unless it is the situation as given.
     """
 
     when: str

@@ -45,9 +45,9 @@ _PLAIN = "\x1b[0m"
 _WHERE = "\x1b[6n"  # request of the cursor position (ECMA-48)
 _PATIENCE = 3.0  # seconds to wait for an answer
 _GAP = 8
-"""Maximum number of unchanged cells between changed cells that are sent again.
+"""Maximum gap between changed cells that are sent together [cells].
 
-Skipping so few cells would not save output.
+The unchanged cells in a longer gap are not sent again.
 """
 
 
@@ -77,7 +77,10 @@ class Painted:
         self._touched.update(range(len(self._wanted)))
 
     def take(self, text: str) -> str:
-        """Store the cells of an output text; return other output, which must be sent at once."""
+        """Store the cells of an output text, and return the rest of the output.
+
+        The rest does not consist of cells, and must be sent at once.
+        """
         text = self._rest + text
         cut = _INCOMPLETE.search(text)
         self._rest = text[cut.start() :] if cut else ""

@@ -307,7 +307,10 @@ class Session:
     # backup in case of a crash
 
     def note_unsaved(self) -> WorkingFile:
-        """Prepare a backup copy of unsaved text; return the working file that can write this copy."""
+        """Pass unsaved text to the working file, and return the working file.
+
+        The next backup copy of the working file contains this text.
+        """
         self.file.unsaved = self.draft.text if self.changed else None
         return self.file
 

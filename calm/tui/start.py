@@ -49,7 +49,7 @@ def open_session(
 def _refuse_other_files(session: Session) -> None:
     """Raise an exception if the environment is unknown, or if another file has mistakes.
 
-    The builder cannot edit catalogue files and environment files.
+    The builder cannot correct mistakes in catalogue files and environment files.
     """
     Catalogue.load(session.catalogs)
     here, names = session.choice.environment, session.choice.environments

@@ -126,7 +126,10 @@ class Legible(LineFilter):
 
 @lru_cache(4)
 def legible(dark: bool, sixteen: bool) -> Legible:
-    """Return the filter for a dark or light background, always the same object."""
+    """Return the filter for a dark or light background.
+
+    Equal arguments always return the same filter object.
+    """
     # cached, because Textual caches the filtered lines by filter
     return Legible(dark=dark, sixteen=sixteen)
 

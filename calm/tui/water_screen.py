@@ -48,7 +48,8 @@ _ELSEWHERE = (
 )
 _INHERITED = "as in the default environment"
 _FORMS: dict[type[Widget], str] = {FormChoice: "", Field: "constant", ProfileGrid: "table"}
-"""Form of a property that each type of widget edits; "" for a widget that is always shown."""
+"""Form of a property (``constant`` or ``table``) that each type of widget edits; "" for any form.
+"""
 
 
 class WaterScreen(screen.DraftScreen):
@@ -106,7 +107,7 @@ class WaterScreen(screen.DraftScreen):
 
     @property
     def environment_file(self) -> str | None:
-        """Path of the environment file, if the screen shows its environment; otherwise None."""
+        """Path of the displayed environment file; None for an environment of the mooring file."""
         choice, draft = self.session.choice, self.session.draft
         here = choice.environment
         return None if here in choice.environments or draft.problems else here

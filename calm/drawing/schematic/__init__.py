@@ -121,8 +121,8 @@ def _place_on_sheet(
 ) -> tuple[float, tuple[PlacedPart, ...]]:
     """Place the parts of one sheet; return the vertical position of the surface, and the parts.
 
-    For a helicopter, the hook takes the place of the surface. On every sheet but the first, the
-    position is the top of the sheet.
+    Under a helicopter, the returned position is that of the hook. On every sheet but the first, it
+    is the top of the sheet.
     """
     if not first:
         return top, placed(parts, top)

@@ -34,7 +34,10 @@ from calm.physics.line import Floats, Water
 from calm.quantities import bearing_of, bearing_text, say
 
 _LEAST_SPAN = 0.1
-"""Minimum horizontal range relative to the height, so that a vertical line looks vertical."""
+"""Minimum horizontal range, as a fraction of the height of the picture.
+
+With a smaller range, a vertical line would not look vertical.
+"""
 
 _NAMED_FROM = 50
 _SHARE_OF_NAMES = 0.36

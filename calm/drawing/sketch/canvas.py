@@ -181,7 +181,7 @@ class PlotFrame:
         """Write numbers along the last row of the canvas, and ticks on the row above.
 
         `units` are alternative names of the unit. The first name that fits after the numbers is
-        written. If none fits, the last numbers are omitted to make room for the last name.
+        written. If no name fits, the last of `units` is written in place of the last numbers.
         """
         row, edge = self.canvas.height - 1, self.canvas.width
         labels: list[tuple[int, str]] = []
