@@ -282,7 +282,8 @@ def load_chart(title: str, loads: Sequence[PieceBar], size: tuple[float, float])
 def beside_row(part: ShownPart, height: float, *, first: bool = False, last: bool = False) -> str:
     """Draw the line and the symbol of a part as SVG, for a table row.
 
-    If `first` is true, the line begins at the symbol; if `last` is true, the line ends there.
+    If `first` is true, the line begins at the symbol. If `last` is true, the line ends at the
+    symbol.
     """
     page = _row_picture(height, ", ".join(part.labels))
     middle = height / 2

@@ -120,7 +120,8 @@ def _cases(assessment: Assessment) -> Iterator[blocks.Block]:
 def _case_text(case: LoadCase, cases: Sequence[LoadCase]) -> str:
     """Describe a load case briefly.
 
-    The first case of an environment includes the name of the environment.
+    If `cases` contains the unchanged environment, the description of a changed case begins with
+    "same" in place of the name.
     """
     if case.situation in (STILL, STILL_LOW):
         return case.situation

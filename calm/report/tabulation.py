@@ -42,7 +42,7 @@ _KNOTS = replace(QUANTITIES["speed"], display="knot")
 
 @dataclass(frozen=True)
 class TabulationRow:
-    """Result of a tow at one ship speed over the ground [m/s], or the reason why there is none."""
+    """Result of a tow at one ship speed over the ground [m/s], or the reason for a failure."""
 
     speed: float
     outcome: Result | NoEquilibrium

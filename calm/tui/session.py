@@ -187,7 +187,7 @@ class Session:
     def duplicate(
         self, spots: Iterable[Place], also: Sequence[Named] = (), times: int = 1
     ) -> Place | None:
-        """Insert copies of rows below the last of the rows, and return the first copy.
+        """Insert copies of rows below the last of these rows, and return the first copy.
 
         The references in `also` are extended to the copies.
         """

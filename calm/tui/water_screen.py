@@ -48,8 +48,7 @@ _ELSEWHERE = (
 )
 _INHERITED = "as in the default environment"
 _FORMS: dict[type[Widget], str] = {FormChoice: "", Field: "constant", ProfileGrid: "table"}
-"""Form of a property (``constant`` or ``table``) that each type of widget edits; "" for any form.
-"""
+"""Form that each type of widget edits, ``constant`` or ``table``; "" for any form."""
 
 
 class WaterScreen(screen.DraftScreen):
@@ -184,7 +183,10 @@ class WaterScreen(screen.DraftScreen):
     # changes
 
     def change(self, make: Callable[[WaterForm], Draft], label: str, message: str = "") -> bool:
-        """Change the file; return whether the change succeeded, or show why not."""
+        """Change the file; return whether the change succeeded.
+
+        If the change fails, a message shows the reason.
+        """
         is_made, _ = self.workspace.attempt(lambda: self.session.do(make(self.water), label))
         self.show_draft()
         if is_made:

@@ -111,7 +111,7 @@ def imported(path: Path, time: str, depth: float) -> tuple[Sequence[str], Sequen
 def _written(value: float) -> str:
     """Format a value with all its significant digits.
 
-    A number of 32-bit precision gets no further digits, which would be rounding noise.
+    The additional digits of a number with 32-bit precision are rounding noise, and are omitted.
     """
     short = float32(value)
     if isclose(short, value, rel_tol=_NOISE):

@@ -108,7 +108,10 @@ def _draw_sheets(shown: Schematic, most: float) -> list[str]:
 
 
 def _equal_groups(parts: Sequence[PlacedPart], room: float) -> list[list[PlacedPart]]:
-    """Divide parts into as few groups of height `room` as possible, of about equal height."""
+    """Divide parts into groups of about equal height.
+
+    There are as few groups as possible for a height of `room` per group.
+    """
     fewest = len([*divided(parts, room)])
     each = sum(one.height for one in parts) / fewest
     while len(groups := [*divided(parts, each)]) > fewest:
