@@ -1,7 +1,8 @@
-"""Figures of a design check: the mooring to scale, the loads, and line symbols for table rows.
+"""Figures of a design check.
 
-All figures are black, grey and white, so that no information depends on colour. Lengths are in
-points.
+The figures are the elevation of the mooring, the load chart, and the symbols of the line in table
+rows. The figures are black, grey and white, so that no information depends on colour. Lengths are
+in points.
 """
 
 import re
@@ -80,8 +81,9 @@ def elevation(
 ) -> tuple[str, float]:
     """Draw the elevation of the mooring as SVG; also return the scale of the axes [m per point].
 
-    The load cases are in the vertical plane of the first load case, which is a thick line. Labels,
-    from the top down, are on the right. A wide mooring without space for labels has only marks.
+    All load cases are projected onto one vertical plane. The first load case determines this plane,
+    and is drawn as a thick line. The labels are on the right, in order of depth. If a wide mooring
+    leaves no space for labels, the parts are only marked on the line.
     """
     width, height = size
     page = picture(width, height, title)
@@ -159,9 +161,9 @@ _STROKES: dict[str, dict[str, float | str]] = {
 _HOLLOW = (*BALLS, Symbol.SPHERE, Symbol.FOAM, Symbol.STREAMLINED, Symbol.BUOY)
 _FIGURES, _GAP = 26.0, 6.0
 _LEAST_LABELS = 138.0
-"""Width reserved for labels next to a wide mooring; less if all labels are shorter."""
+"""Minimum width for labels next to a wide mooring; shorter labels take only their own width."""
 _REAL = 0.78
-"""Actual text width relative to the upper bound from `text_width`."""
+"""Actual width of a text, as a fraction of the upper bound from `text_width`."""
 _MOST_LEVELS = 7
 
 
@@ -280,7 +282,8 @@ def load_chart(title: str, loads: Sequence[PieceBar], size: tuple[float, float])
 def beside_row(part: ShownPart, height: float, *, first: bool = False, last: bool = False) -> str:
     """Draw the line and the symbol of a part as SVG, for a table row.
 
-    If `first` is true, the line begins at the symbol; if `last` is true, the line ends there.
+    If `first` is true, the line begins at the symbol. If `last` is true, the line ends at the
+    symbol.
     """
     page = _row_picture(height, ", ".join(part.labels))
     middle = height / 2

@@ -37,9 +37,9 @@ class Scale:
     logarithmic: bool = False
 
     def share(self, value: ArrayLike) -> Floats:
-        """Return the positions of values as fractions, 0 at `low` and 1 at `high`.
+        """Return the positions of values along the axis, as fractions: 0 at `low`, 1 at `high`.
 
-        A value without a logarithm gives NaN if the scale is logarithmic.
+        On a logarithmic scale, zero and negative values give NaN.
         """
         given: Any = np.asarray(value, dtype=np.float64)
         if not self.logarithmic:
@@ -49,7 +49,10 @@ class Scale:
 
 
 def covering(*values: ArrayLike, margin: float = _MARGIN) -> Scale:
-    """Return a linear scale for all finite values, with a margin; 0 to 1 if none is finite."""
+    """Return a linear scale that covers all finite values, with a margin.
+
+    Without finite values, the scale is from 0 to 1.
+    """
     every = np.concatenate([np.ravel(np.asarray(each, dtype=np.float64)) for each in values])
     every = every[np.isfinite(every)]
     if not every.size:
@@ -60,7 +63,9 @@ def covering(*values: ArrayLike, margin: float = _MARGIN) -> Scale:
 
 
 def to_one_scale(across: Scale, up: Scale, width: float, height: float) -> tuple[Scale, Scale]:
-    """Widen the narrower range about its middle, so that both axes have the same scale.
+    """Return both scales, with equal lengths per point; the range that is too short is widened.
+
+    The middle of the range does not change.
 
     Parameters
     ----------
@@ -153,9 +158,9 @@ def seconds(times: Any) -> NDArray[np.float64]:
 
 
 def _days_of_months(months: Any, step: int) -> Any:
-    """Return every `step`-th day of each month from the first.
+    """Return the first day of each month, and every `step`-th day after the first day.
 
-    Days just before the first day of the next month are omitted.
+    The last of these days is omitted if the next month begins soon after it.
     """
     each = np.arange(months[0], months[1] + 1).astype("datetime64[D]")
     return (each[:, None] + np.arange(0, 29 - step // 2, step)).ravel()
@@ -183,8 +188,8 @@ def number(value: float) -> str:
 class Stroke(NamedTuple):
     """Colour, width [pt] and dashes of a line.
 
-    `dashes` are lengths of dashes and gaps [pt]; empty for a solid line. A `square` line is half
-    its width longer at each end.
+    `dashes` are the lengths of dashes and gaps [pt], or empty for a solid line. If `square` is
+    true, the line extends beyond each end by half of its width.
     """
 
     colour: str

@@ -24,7 +24,7 @@ SIGNS = {
     "release": ("D", 5.0, "#009e73"),
     "anchor": ("v", 6.0, "black"),
 }
-"""Form, size [pt] and colour of the mark for a role."""
+"""Form, size [pt] and colour of the mark for each role of a component."""
 
 STROKES = {
     LineKind.LINE: Stroke(LINE_COLOUR, 1.4),
@@ -35,7 +35,10 @@ STROKES = {
 """Stroke for each kind of line; bands are filled areas instead."""
 
 LEAST_SPAN = 0.1
-"""Minimum horizontal range relative to the height, so that a vertical line does not look bent."""
+"""Minimum horizontal range, as a fraction of the height of the line or the water depth.
+
+With a smaller range, a vertical line would look bent.
+"""
 
 _SIZE = 8.0  # font size in points
 _WIDTH = 600.0  # points
@@ -58,9 +61,10 @@ _FASTER, _IN_PLANE = Stroke(WATER_COLOUR, 1.4), Stroke(WATER_COLOUR, 1.0, (3.0, 
 def line_drawing(result: AnyResult, uncertain: Uncertain | None = None) -> str:
     """Draw a mooring, a net or a tow from the side and from above, as SVG.
 
-    The side view is in the plane of `line_picture.plane_of`. The line in still water is dashed. A
-    band behind the line shows the uncertainty of a mooring. A second graph shows the speed of the
-    water past the line. There is no plan of a tow that stays in the plane of the side view.
+    The direction of the side view is from `line_picture.plane_of`. The line in still water is
+    dashed. A band behind the line shows the uncertainty of a mooring. A second graph shows current
+    speed against depth; for a tow, the speed is relative to the line. The view from above is
+    omitted if a tow lies in the plane of the side view.
     """
     plane = line_picture.plane_of(result)
     side = line_picture.elevation_of(result, uncertain=uncertain)
@@ -126,7 +130,7 @@ def draw_elevation(
     written: Sequence[tuple[str, PictureMark]],
     depths: Scale,
 ) -> None:
-    """Draw the side view of the line, with a column of the names of its parts."""
+    """Draw the side view of the line, with the names of the parts in a column."""
     _, _, width, _ = place
     widest = max((text_width(text, _SIZE) for text, _ in written), default=0.0)
     room = min(widest, _LONGEST_NAME)
@@ -208,10 +212,12 @@ def draw_flow(
     depths: Scale,
     what: str,
 ) -> None:
-    """Draw current speed against depth and, if different, its component in a vertical plane.
+    """Draw current speed against depth.
 
-    `flow` is depths (n,) [m], and velocities (n,) to the east and north [m/s]. `plane` is the (2,)
-    direction of the plane, east and north. `what` follows "speed" in the axis label.
+    A second curve shows the current component in a vertical plane, if this component differs from
+    the speed. `flow` is depths (n,) [m], and velocities (n,) to the east and north [m/s]. `plane`
+    is the (2,) direction of the plane, east and north. The axis label is "speed" and the text
+    `what`.
     """
     depth, u, v = flow
     speed, in_plane = np.hypot(u, v), along(u, v, plane)

@@ -48,9 +48,10 @@ class Polyline:
 
 @dataclass(frozen=True)
 class PictureMark:
-    """A marked point of the line: component id, name, role and depth [m] of a part.
+    """A marked part of the line: component id, name, role and depth [m].
 
-    `x` and `y` are picture coordinates [m]; in `named_parts`, distances east and north [m].
+    `x` and `y` are picture coordinates [m]. In a mark from `named_parts`, `x` is the distance to
+    the east, and `y` the distance to the north [m].
     """
 
     use: str
@@ -88,7 +89,10 @@ class LinePicture:
     seabed: float | None = None
 
     def span(self) -> tuple[float, float]:
-        """Return the range of `x`, which includes 0; the line in still water does not count."""
+        """Return the range of `x`, which includes 0.
+
+        The line in still water is ignored.
+        """
         reach = [line.x for line in self.lines if line.kind is not LineKind.STILL]
         return min(0.0, *(float(x.min()) for x in reach)), max(
             0.0, *(float(x.max()) for x in reach)
@@ -98,9 +102,10 @@ class LinePicture:
 def elevation_of(
     result: AnyResult, overlays: Sequence[Shape] = (), uncertain: Uncertain | None = None
 ) -> LinePicture:
-    """Return the side view of a line, in the vertical plane of its excursion or of the tow.
+    """Return the side view of a line, in the vertical plane of `plane_of`.
 
-    `overlays` are other shapes to compare. `uncertain` is shown as a band from 5 to 95 %.
+    `overlays` are other shapes to compare with the line. `uncertain` adds a band from the 5th to
+    the 95th percentile.
     """
     plane, depth = plane_of(result), QUANTITIES["depth"].label
     marks = tuple(
@@ -158,7 +163,7 @@ def from_the_side(
 
 
 def _seabeds(result: AnyResult) -> Iterator[Polyline]:
-    """Yield the seabed at each anchor on a slope, or in shallower water than the deepest anchor."""
+    """Yield lines of the seabed at anchors on a slope, and at anchors above the deepest seabed."""
     plane, legs = plane_of(result), result.legs
     drawn = np.concatenate([along(leg.shape.x, leg.shape.y, plane) for leg in legs])
     stand = [leg for leg in legs if leg.leg.anchored]
@@ -194,7 +199,10 @@ def plane_of(result: AnyResult) -> Floats:
 
 
 def plane_of_legs(legs: Sequence[LegResult]) -> Floats:
-    """Return the direction of the side view for one leg or all legs of a net, as in `plane_of`."""
+    """Return the horizontal direction of the side view, as in `plane_of`.
+
+    `legs` are all legs of a net, or the single leg of a mooring or tow.
+    """
     if len(legs) > 1:
         depth = max(leg.water.depth for leg in legs)
         x, y = (np.concatenate([getattr(leg.shape, name) for leg in legs]) for name in "xy")
@@ -227,9 +235,9 @@ def levels_of(result: AnyResult) -> tuple[float, float]:
 
 
 def seabed_of(result: AnyResult) -> float:
-    """Return the depth of the deepest seabed in the picture [m].
+    """Return the maximum depth of the seabed in the picture [m].
 
-    The deepest seabed is at an anchor, or at the end of a slope.
+    On a slope, the maximum may be at an end of the drawn seabed. Otherwise it is at an anchor.
     """
     beds = (float(bed.y.max()) for bed in _seabeds(result))
     return max(*(float(one.water.depth) for one in (result, *result.legs)), *beds)
@@ -251,8 +259,8 @@ def current_between(
 ) -> tuple[Floats, Floats, Floats]:
     """Return depths, and the current to the east and north at these depths [m/s].
 
-    The depths are at least `samples` depths from `top` to `bottom` [m], and all levels of the
-    current profile between.
+    There are `samples` equally spaced depths from `top` to `bottom` [m]. The levels of the current
+    profile between `top` and `bottom` are added.
     """
     depth = np.union1d(np.linspace(top, bottom, samples), water.level)
     depth = depth[(depth >= top) & (depth <= bottom)]
@@ -263,7 +271,8 @@ def current_between(
 def water_past(result: AnyResult) -> tuple[Floats, Floats, Floats]:
     """Return depths, and the velocity of the water relative to the line, east and north [m/s].
 
-    The velocity is the current, minus the velocity of the ship for a tow.
+    For a mooring, this velocity is the current. For a tow, it is the current minus the velocity of
+    the ship.
     """
     water, tow = result.water, result.file.tow
     if tow is None:

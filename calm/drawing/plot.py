@@ -41,8 +41,8 @@ _ASIDE = r"(?s)<metadata>.*?</metadata>|<style\b.*?</style>|<!--.*?-->\s*"
 def figure_svg(figure: Figure) -> str:
     """Convert a figure to SVG without prologue and metadata; letters remain text.
 
-    A style sheet in the drawing would apply to the whole page, so its settings are converted to
-    attributes of elements.
+    A style sheet in the drawing would apply to the whole page. The settings of the style sheet are
+    therefore converted to attributes of elements.
     """
     import matplotlib
 

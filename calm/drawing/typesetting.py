@@ -12,9 +12,10 @@ from typing import Literal
 import numpy as np
 
 FONTS = Path(str(files("calm.drawing") / "fonts"))
-"""Folder of DejaVu Sans and Source Sans 3, unmodified, with their licences.
+"""Folder of the fonts DejaVu Sans and Source Sans 3, unmodified, with their licences.
 
-Typst includes DejaVu Sans Mono; signs that Source Sans lacks are set in DejaVu Sans.
+Typst itself contains DejaVu Sans Mono. Characters that Source Sans 3 does not have are set in
+DejaVu Sans.
 """
 
 DOTS_PER_INCH = 200.0
@@ -28,8 +29,8 @@ def typeset(
 ) -> bytes:
     """Typeset a typst template; a PNG contains only the first page.
 
-    `inputs` are texts in `sys.inputs`, not interpreted as markup. `timestamp` is the PDF date in
-    seconds since 1970, or None for no date.
+    The template reads `inputs` from `sys.inputs`, as plain text without markup. `timestamp` is the
+    PDF date in seconds since 1970, or None for no date.
     """
     import typst
 

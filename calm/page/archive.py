@@ -18,7 +18,7 @@ from calm.shipped import shipped_folder
 LIBRARIES = ("jinja2", "pint", "rich", "textual", "xlsxwriter")
 """Distributions required by the builder and its documents."""
 IN_RUNTIME = ("numpy", "pydantic", "pyyaml", "gsw")
-"""Distributions that the runtime contains as compiled libraries, with their dependencies."""
+"""Distributions that Pyodide contains as compiled libraries."""
 
 _DEPENDENCIES = ("annotated-types", "pydantic-core", "typing-extensions", "typing-inspection")
 _EXCLUDED = re.compile(
@@ -34,8 +34,8 @@ _TIME_STAMP = (1980, 1, 1, 0, 0, 0)
 def packed(python: str) -> bytes:
     """Create the ZIP archive and return the content; the same files always give the same bytes.
 
-    The archive also contains compiled modules if the page has the Python version (such as "3.13")
-    of this process.
+    `python` is the Python version of the page, such as "3.13". If this process has the same
+    version, the archive also contains compiled modules.
     """
     compiles = python == f"{sys.version_info[0]}.{sys.version_info[1]}"
     content = io.BytesIO()

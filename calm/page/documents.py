@@ -22,7 +22,7 @@ class Download:
     kind : name of the kind in the messages of the page
     title : title of the download button
     suffix : text appended to the name of the mooring file
-    content : function that makes the document from the mooring in each environment
+    content : function that creates the document from designs, one for each environment
     """
 
     kind: str

@@ -15,7 +15,10 @@ from textual.keys import KEY_NAME_REPLACEMENTS
 from textual.message import Message
 
 _BEGIN = "\x1b[?1049h\x1b[?25l"
-"""Alternate screen, hidden cursor. Keys, pastes and the mouse arrive as messages of the page."""
+"""Control sequence that shows the alternate screen and hides the cursor.
+
+No sequence turns on mouse or paste input, because such input arrives as messages of the page.
+"""
 _END = "\x1b[?25h\x1b[?1049l"
 _CONTROL_KEYS = {"\r": "enter", "\n": "enter", "\t": "tab", "\x7f": "backspace"}
 """Keys that an on-screen keyboard sends as text."""

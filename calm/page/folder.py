@@ -26,7 +26,7 @@ ARCHIVE = "calm.zip"
 _RUNTIME = "runtime/"
 _CORE = ("pyodide.mjs", "pyodide.asm.wasm", "python_stdlib.zip", "pyodide-lock.json")
 _CODE = ("pyodide.asm.js", "pyodide.asm.mjs")
-"""Alternative files, depending on the version of Pyodide."""
+"""Names of the same Pyodide file in different versions of Pyodide."""
 _SCREEN = ("xterm.js", "xterm.css")
 
 

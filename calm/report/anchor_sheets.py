@@ -28,11 +28,15 @@ if TYPE_CHECKING:
 _ROWS = 6
 """Number of rows in the table of the anchor's descent."""
 _DEEPER = 0.5
-"""Extra depth during the descent, relative to equilibrium, above which a component without an
-instrument is listed [m].
+"""Minimum extra depth for which the drop plan lists a component without an instrument [m].
+
+The extra depth is the maximum depth during the descent minus the depth in equilibrium. A component
+that sinks below its depth rating is always listed.
 """
 _REPRESENTED = 0.02
-"""Share of the fall time after which the fall speed is drawn; until then, inertia limits the speed.
+"""Initial fraction of the fall time in which the fall speed is not drawn.
+
+In this time, inertia limits the speed.
 """
 
 
@@ -186,8 +190,8 @@ def _distance(distance: float) -> str:
 def offset_from_target(plan: DropPlan, place: tuple[float, float]) -> str:
     """Format the position of a point relative to the target, north and east.
 
-    Latitude and longitude follow if known. `place` is the distances east and north of the target
-    [m].
+    The latitude and longitude are added if known. `place` is the distance to the east and the
+    distance to the north of the target [m].
     """
     east, north = place
     position = plan.position(place)

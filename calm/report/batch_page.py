@@ -146,7 +146,10 @@ def statistics_tables(summary: Summary) -> Iterator[Table]:
 
 
 def worst_tables(summary: Summary) -> Iterator[Table | Prose]:
-    """Yield a table for each response, with the worst profiles and all their responses."""
+    """Yield a table of the worst profiles for each response.
+
+    Each table shows all responses of these profiles.
+    """
     for name, profiles in summary.worst.items():
         if not profiles:
             yield Prose((f"The {TITLES[name]} is unknown in all profiles.",), State.UNKNOWN)

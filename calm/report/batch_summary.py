@@ -159,8 +159,8 @@ def _most_exceeded(rule: RuleShare) -> str:
 def profiles_table(title: str, profiles: Sequence[tuple[str, WorstProfile]]) -> Table:
     """Tabulate profiles with their responses.
 
-    Each profile is paired with the name of the response for which the profile is the worst, or with
-    "".
+    `profiles` are pairs of a text and a profile. The text is empty, or is the response for which
+    the profile is the worst.
     """
 
     def response(name: str) -> Field:
@@ -249,7 +249,10 @@ def left_out(summary: Summary) -> str:
 
 
 def refusals(summary: Summary) -> Iterator[str]:
-    """Yield each reason for missing return levels, preceded by the names of the responses."""
+    """Yield a text for each reason why return levels are missing.
+
+    The text begins with the names of the responses, unless the reason applies to all responses.
+    """
     reasons: dict[str, list[str]] = {}
     for response in summary.known_responses:
         for fit in response.return_levels:

@@ -92,7 +92,10 @@ class Table:
     ruled: bool = True
 
     def without_empty_columns(self) -> Table:
-        """Return the table without empty columns, except a table to be filled in by hand."""
+        """Return the table without empty columns.
+
+        A table that is filled in by hand keeps its empty columns.
+        """
         count = len(self.columns)
         full = [row for row in self.rows if len(row) == count]
         kept = [at for at in range(count) if any(row[at] != _EMPTY for row in full)]
@@ -137,7 +140,10 @@ class Figure:
 
 @dataclass(frozen=True)
 class Span:
-    """Part of a sentence, in the colour of a state or, if `quiet`, styled as secondary text."""
+    """Part of a sentence, in the colour of a state.
+
+    If `quiet` is true, the part has the style of secondary text.
+    """
 
     text: str
     state: State | None = None
@@ -338,7 +344,8 @@ def words(heading: str, show: Shown = "", share: float = 1.0, **more: Any) -> Fi
     ----------
     show : attribute name, member index, or function that gives the text of an item; by default, the
         attribute named `heading`
-    share, more : attributes of `Column`
+    share : weight of the column in the division of the page width
+    more : further attributes of `Column`
     """
     return Column(heading, share=share, **more), _getter(show, heading)
 
@@ -358,7 +365,10 @@ def number(heading: str, show: Shown = "", unit: str = "", **more: Any) -> Field
 
 
 def of_first(*fields: Field) -> list[Field]:
-    """Adapt columns of items to rows that are tuples with the item as first member."""
+    """Adapt fields for items to rows that are tuples.
+
+    The first member of each tuple is the item.
+    """
 
     def first(show: Callable[[Any], Any]) -> Callable[[Any], Any]:
         return lambda row: show(row[0])
@@ -374,8 +384,8 @@ def blank(heading: str, unit: str = "", share: float = 1.0) -> Field:
 def quantity(name: str | Quantity, show: Shown = "", heading: str | None = None) -> Field:
     """Create a column of a quantity for `table_of`, in display units.
 
-    `show` gives the value [SI, degrees] as in `words`; by default, the attribute named like the
-    quantity. `heading` replaces the usual heading.
+    `show` gives the value [SI, degrees] as in `words`. By default, the value is the attribute that
+    has the name of the quantity. `heading` replaces the usual heading.
     """
     shown = QUANTITIES[name] if isinstance(name, str) else name
     value = _getter(show, shown.name)
@@ -387,7 +397,7 @@ _SHORT = {
     "knockdown": "knock-\ndown",
     "safety_factor": "safety\nfactor\n",
 }
-"""Short headings, with which the table of a line fits 80 columns."""
+"""Short headings, so that the table of a line is at most 80 columns wide."""
 
 
 def quantity_column(quantity: Quantity, heading: str | None = None) -> Column:

@@ -1,10 +1,13 @@
 """Chart of cables in a uniform current for one value of K, on an A4 page.
 
-The main curve is graduated in the angle φ and the arc length s′. A cable is the part of the main
-curve from a lower end A to an upper end B. Each point P = (y′ of A, z′ of B) stands for one cable.
-Further curves connect points with equal L/H, D/H or T_A/(wH). L is the length of the cable, D and H
-are the horizontal and vertical distances from A to B. T_A is the tension at A, and w the weight per
-metre.
+K is the drag parameter from `calm.analytic.chart_branch`. The chart has one main curve, with ticks
+at values of the angle φ and of the arc length s′. Any piece of the main curve is the shape of a
+cable, with the lower end A and the upper end B.
+
+Each cable is also a point P in the chart. The coordinates of P are y′ of A and z′ of B. Further
+curves connect points P that have the same ratio L/H, D/H or T_A/(wH). L is the length of the cable.
+D is the horizontal distance and H the vertical distance from A to B. T_A is the tension at A, and w
+the weight per metre.
 """
 
 from __future__ import annotations
@@ -143,7 +146,10 @@ def _point_at(points: CurvePoints, scale: Floats, value: float) -> tuple[float, 
 def _draw_family(
     axes: Axes, labels: Labels, family: Family, points: CurvePoints, starts: NDArray[np.bool_]
 ) -> None:
-    """Draw a family of loci of P as contour lines over y′ of A and z′ of B."""
+    """Draw a family of curves. Each curve connects the points P with the same ratio.
+
+    The curves are contour lines of the ratio, as a function of y′ of A and z′ of B.
+    """
     # Equal steps in φ are small steps in y′ where the curve turns back; contours need rising y′.
     angles = np.linspace(points.phi[starts][0], points.phi[starts][-1], _POINTS)
     lower = [np.interp(angles, points.phi, getattr(points, name)) for name in _COORDINATES]
@@ -221,10 +227,10 @@ class Labels:
             self.boxes.append(Bbox([np.subtract(place, half), np.add(place, half)]))
 
     def tick(self, x: float, y: float, angle: float, size: float, colour: str) -> None:
-        """Draw a tick at a point of a curve, to the right when facing along the curve.
+        """Draw a tick at a point of a curve.
 
-        `angle` is the direction of the curve [rad]. A negative `size` [pt] draws the tick to the
-        left.
+        `angle` is the direction of the curve at this point [rad]. Seen in this direction, the tick
+        is on the right of the curve. If `size` [pt] is negative, the tick is on the left.
         """
         place, right = self._pixel_and_normal(x, y, angle)
         ends = np.array([place, place + right * size * self._points])
@@ -234,7 +240,10 @@ class Labels:
     def beside(
         self, text: str, x: float, y: float, angle: float, size: float, colour: str, font: float
     ) -> None:
-        """Write a label beyond the end of a tick; the tick is defined as in `tick`."""
+        """Write a label beyond the end of a tick.
+
+        The arguments that describe the tick are as in `tick`.
+        """
         place, right = self._pixel_and_normal(x, y, angle)
         side = right * np.sign(size)
         label = self._text(text, place, 0.0, colour, font)

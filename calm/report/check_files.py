@@ -68,14 +68,14 @@ def _entry_key(finding: Finding) -> Hashable:
 def check_document(assessments: Sequence[Assessment], *, every: bool = False) -> dict[str, Any]:
     """Return the JSON object of a design check; results without a solution are null.
 
-    From `situations` on, each value is an object with one entry per mooring, by name. Less obvious
-    keys are:
+    The values of `key_figures`, and of `situations` and all later keys, are objects with one entry
+    per mooring, by name. Less obvious keys are:
 
     - `estimated`: number of findings based on estimates
     - `findings`, `findings_in_all`: listed findings, and number of all findings
     - `key_figures`: values of page one
     - `launch`, `recovery`: deployment, and ascent after release
-    - `backup`, `losses`: net buoyancy after breaks, and after the loss of a float
+    - `backup`, `losses`: net buoyancy after a break of the line, and after the loss of a float
 
     `findings` are those of `listed_findings`, or all if `every` is true.
     """

@@ -38,7 +38,11 @@ from calm.report.page_one import (
 )
 
 _OTHER_KIND = ("slack",)
-"""Rules omitted from the matrix: their utilisation is not a share of a strength or a range."""
+"""Rules omitted from the matrix.
+
+The utilisation of `slack` is the required minimum tension divided by the actual tension. It is not
+comparable with the used part of a strength.
+"""
 _MOST_ENVIRONMENTS = 12
 _NEAR = 0.9
 
@@ -62,7 +66,7 @@ class SummaryRow:
     Attributes
     ----------
     cells : cells by name of the environment, in the order of the columns
-    handling : cell for launch, recovery and breaks
+    handling : cell for launch, recovery, and breaks of the line
     governs : check with the largest utilisation in the first environment
     accepted, findings : numbers of accepted findings and of all findings
     """
@@ -175,7 +179,8 @@ def summary_page(rows: Sequence[SummaryRow]) -> Iterator[Block]:
 def environments_of(rows: Sequence[SummaryRow]) -> tuple[list[str], list[str], dict[str, str]]:
     """Return all environments, the environments with a column in the matrix, and their codes.
 
-    If there are many, only the most severe have a column. Codes are E1, E2 and so on.
+    The matrix has columns for at most `_MOST_ENVIRONMENTS` environments, those with the largest
+    utilisations. Codes are E1, E2 and so on.
     """
     names = list(dict.fromkeys(name for row in rows for name in row.cells))
     codes = {name: f"E{at}" for at, name in enumerate(names, 1)}

@@ -360,11 +360,12 @@ def basis_page(signed: SignedMooring, page_size: str = "a4") -> Iterator[Block]:
 
 
 _AROUND, _ROW, _LISTED = 95.0, 12.6, 6.5
-"""Heights on the last page [pt]: all headings together, a table row, and a line of the mooring
-file.
+"""Heights of all headings, of a table row, and of a line of the mooring file [pt].
+
+These heights determine how many lines of the file fit on the last page.
 """
 _UNJUDGED = 11
-"""Height of the exclusions below the environment table, in rows of that table."""
+"""Height of the section "Not covered", in rows of the environment table."""
 
 
 def _limits(limits: Iterable[LimitKey]) -> Table:

@@ -118,7 +118,11 @@ def _cases(assessment: Assessment) -> Iterator[blocks.Block]:
 
 
 def _case_text(case: LoadCase, cases: Sequence[LoadCase]) -> str:
-    """Describe a load case briefly; later cases of an environment do not repeat its name."""
+    """Describe a load case briefly.
+
+    If `cases` contains the unchanged environment, the description of a changed case begins with
+    "same" in place of the name.
+    """
     if case.situation in (STILL, STILL_LOW):
         return case.situation
     own = brief = case.environment

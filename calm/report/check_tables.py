@@ -61,7 +61,10 @@ def named(labels: Iterable[str], most: int = 3) -> str:
 
 
 def _runs(stem: str, numbers: Iterable[int]) -> Iterator[tuple[str, int]]:
-    """Yield a label such as "glass 1 to 4", and the length, of each run of consecutive numbers."""
+    """Yield the label and the length of each run of consecutive numbers.
+
+    An example of a label is "glass 1 to 4".
+    """
     each = sorted(set(numbers))
     for _, group in groupby(enumerate(each), lambda pair: pair[1] - pair[0]):
         run = [number for _, number in group]
@@ -77,8 +80,8 @@ def named_components(findings: Iterable[Finding]) -> str:
 def counted_states(findings: Iterable[Finding]) -> Counter[State]:
     """Count the results of rules on components by state, for one or several moorings.
 
-    A rule counts once per component, with its most severe state. A missing value, or a cluster of
-    failing or warning floats, counts once.
+    A rule counts once per component, with its most severe state. Equal pieces from one row of the
+    file count once per rule if they fail or have a warning. A missing value counts once.
     """
     by_mooring = grouped_by(findings, attrgetter("mooring")).values()
     groups = (grouped_by(worst_by_part(each), counted_as).values() for each in by_mooring)
@@ -90,10 +93,10 @@ GRAVE = (State.FAIL, State.UNKNOWN, State.WARN)
 
 
 def counted_as(finding: Finding) -> tuple[Hashable, ...]:
-    """Return a key that is equal for findings that are counted together.
+    """Return the key by which `counted_states` groups findings.
 
-    Findings on equal pieces from one row of the file are counted together if their state is in
-    `GRAVE`.
+    Findings of a rule on equal pieces from one row of the file have the same key if their state is
+    in `GRAVE`.
     """
     place = finding.place
     if finding.missing is not None or place is None or finding.state not in GRAVE:
@@ -119,9 +122,9 @@ def limits_table(limits: Iterable[LimitKey], title: str = "Limits as used") -> T
 
 
 def component_text(name: str, units: int) -> str:
-    """Format the name of a component, with the number of units if there are several.
+    """Format the name of a component, and the number of its units if there are several.
 
-    An example is a pair of releases.
+    For example, a pair of releases has two units.
     """
     return f"{name}, {units} units each" if units > 1 else name
 

@@ -214,7 +214,10 @@ def in_words(missing: MissingFigures) -> str:
 
 
 def summarised(missing: Sequence[MissingFigures]) -> str:
-    """Return a sentence that counts the components with missing values, in all and per value."""
+    """Return a sentence on the components with missing values.
+
+    The sentence gives the number of these components, and how many of them lack each value.
+    """
     counts = Counter(name for each in missing for name in each.figures)
     figures = ", ".join(f"{_heading(name)} {count}" for name, count in counts.most_common())
     return f"{len(missing)} of them lack values: {figures}"

@@ -121,10 +121,11 @@ _COLUMNS = {
         condition=- remarks=item.remark
     """,
 }
-"""Columns of each sheet: a heading, then `=` and the name of the attribute if the two differ.
+"""Columns of each sheet, each as ``heading=attribute``.
 
-A column with `-` is filled in by hand; a column without an attribute shows the object that precedes
-each item.
+A heading without ``=`` is also the name of the attribute. A column with ``=-`` is filled in by
+hand. The first column may have no attribute, as in ``number=``. The items are then pairs of the
+value in this column and an object with the other attributes.
 """
 
 
@@ -136,7 +137,10 @@ _INDEX: dict[str, Callable[[Any], int]] = {
     "deployment": lambda one: one[1].index,
     "recovery": lambda one: one[1].item.index,
 }
-"""Function from a row to the index of its piece, for each sheet whose last column is `leg`."""
+"""Functions that return the index of the piece for an entry of a sheet, by name of the sheet.
+
+For a net, these sheets have a last column `leg`.
+"""
 
 
 def _sheet(columns: str, items: Iterable[Any]) -> tuple[Sequence[str], Rows]:

@@ -27,7 +27,7 @@ from calm.report.sheet import leg_titles
 
 _BOX = Cell("☐")
 _BLANK = Cell("\u00a0", "\u00a0")
-"""Writing space as high as two lines of text."""
+"""Empty cell for handwriting, as high as two lines of text."""
 _LEAST = 9.0
 """Font size of the logs, which are read and filled in on deck [pt]."""
 
@@ -155,7 +155,7 @@ def _deployment_texts(deck: Deck) -> tuple[str, str, str]:
 def placed(items: Sequence[DeckItem], deck: Deck) -> str:
     """Format clamp positions, measured from the upper end of the piece.
 
-    For an anchor-first deployment, positions from the lower end follow.
+    For an anchor-first deployment, the distances from the lower end are added.
     """
     places = [at for one in items for at in one.places]
     if not places:

@@ -231,8 +231,8 @@ class _Diagram:
 def diagram_pages(deck: Deck, page_size: PageSize) -> list[str]:
     """Draw the pages of the diagram as SVG pictures at print size; no text is smaller than 8 pt.
 
-    Where a page interrupts a line, preferably above a junction, both ends carry the same letter.
-    The same deck gives the same SVG.
+    A long line is interrupted, preferably above a junction. The two ends at an interruption are
+    marked with the same letter. The same deck gives the same SVG.
     """
     diagram = _Diagram(deck, page_size)
     pages = [picture(*page_size.size, diagram.title) for _ in range(diagram.count)]

@@ -22,8 +22,10 @@ _WORDS, _DEPTHS = (
 )  # width of the text of a row together with its depths, and of one depth
 _LINE_HEIGHT = 9.6
 _BOLD, _REGULAR, _WRAPPED = 0.70, 0.77, 1.08
-"""Estimated text width relative to the bound from `text_width`, for bold and regular type; and the
-total width of wrapped lines relative to a single line.
+"""Estimates of text widths.
+
+`_BOLD` and `_REGULAR` are the width of a bold and of a regular text, relative to the bound from
+`text_width`. `_WRAPPED` is the total width of wrapped lines, relative to the text on a single line.
 """
 _SEA_ROW = 16.0
 

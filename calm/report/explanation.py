@@ -84,7 +84,10 @@ class _PrintedValue(NamedTuple):
     scale: float = 1.0
 
     def decimals(self, whole: float) -> int:
-        """Return enough decimals for three digits of the total `whole`, but no more than four."""
+        """Return the number of decimals with which the total `whole` has three digits.
+
+        The number is at most four, but not less than the usual number for the quantity.
+        """
         usual = QUANTITIES[self.quantity].decimals if self.scale == 1.0 else 1
         if whole == 0.0:
             return usual

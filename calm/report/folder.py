@@ -164,7 +164,7 @@ def pdf_leaf(part: Report | Section) -> str:
 def _members(part: Any) -> dict[str, Any] | str:
     """Convert an object of a report to data for the PDF template.
 
-    - A section becomes its printed members.
+    - A section becomes a dictionary of its name, its parts and its running header.
     - A cell without further attributes becomes its text.
     - Any other object becomes a dictionary with its kind.
     """

@@ -19,7 +19,7 @@ _NOTE = (
 def likelihood_tables(named: Iterable[tuple[str, Sequence[Finding]]]) -> Iterator[blocks.Table]:
     """Yield a table of the probabilities of exceeding limits, with the most critical design first.
 
-    No table is yielded if no design has any probability.
+    If no finding has a probability, there is no table.
     """
     designs = [(_likeliest_of_each_rule(findings), name) for name, findings in named]
     designs.sort(key=lambda one: -(one[0][0].probability or 0.0) if one[0] else inf)

@@ -91,18 +91,24 @@ class LoadCase:
 
     @property
     def depth(self) -> float:
-        """Minimum depth of the top of any line [m]."""
+        """Depth of the top of the line [m]; for a net, the minimum over all legs."""
         return min(one.top.depth for one in self.results)
 
     @property
     def knockdown(self) -> float:
-        """Maximum knockdown of the top of any line [m]; 0 if no knockdown is known."""
+        """Knockdown of the top of the line [m]; for a net, the maximum over all legs.
+
+        The value is 0 if no knockdown is known.
+        """
         known = [one.top.knockdown for one in self.results]
         return max((one for one in known if one is not None and not isnan(one)), default=0.0)
 
     @property
     def offset(self) -> float:
-        """Maximum horizontal distance of the top of a line from its anchor [m]."""
+        """Horizontal distance of the top of the line from its anchor [m].
+
+        For a net, this is the maximum over all legs, measured from the origin of the net.
+        """
         return max(hypot(one.top.x, one.top.y) for one in self.results)
 
     @cached_property
@@ -194,7 +200,8 @@ class PieceEnvelope:
     row : results for the piece in the first load case
     tension, case : maximum tension [N], and the code of its load case
     least, tilt : minimum tension [N] and maximum tilt [degrees]
-    moored, launch : strength finding in equilibrium, and during launch
+    moored : finding on the strength of the piece in equilibrium
+    launch : finding on the strength of the piece during launch
     launch_tension, rise_tension : maximum tension during launch and ascent [N]
     """
 

@@ -57,7 +57,7 @@ def missing_block(
     `components:`, the block has no heading and is pasted into that section. The text has only
     comments if no missing value is found, for example without an equilibrium.
 
-    Masses in air that pieces and clamps of the `inventory` lack are optional keys.
+    The optional keys include the mass in air of any item in the `inventory` whose mass is unknown.
     """
     found = list(findings)
     figures = [one.missing for one in found if one.missing is not None]
@@ -84,8 +84,11 @@ def missing_block(
 def _optional_values(findings: Sequence[Finding], inventory: Sequence[InventoryItem]) -> str:
     """List optional keys as comments; "" if there are none.
 
-    Optional values are published values that replace estimates, values without which a check is not
-    judged, and masses in air.
+    Optional keys are:
+
+    - published values that replace estimates
+    - values for rules that are not judged because a value is unknown
+    - masses in air
     """
     use = {one.label: one.use for one in inventory}
     figures = [one.missing for one in findings if one.missing is not None]

@@ -50,8 +50,8 @@ def motion_report(
 ) -> blocks.Report:
     """Build the report of a motion study, beginning with one page on the whole deployment.
 
-    `series` are the depths of the sensors and of other instruments over time, `time` the (n,)
-    times. `cards` summarise the input files.
+    `series` are the depths of sensors and of other instruments over time. `time` is the (n,) times
+    of these depths. `cards` summarise the input files.
     """
     bare = [one for one in series if not np.isfinite(one.measured).any()]
     sensors = [one for one in series if np.isfinite(one.measured).any()]
@@ -85,7 +85,7 @@ def motion_report(
 
 
 MOST_PANELS = 12
-"""Maximum number of sensors drawn, of which withheld sensors take precedence."""
+"""Maximum number of sensors drawn; withheld sensors are selected first."""
 
 
 def methods_text(study: MotionEstimate, series: Sequence[SensorSeries]) -> tuple[str, ...]:
@@ -139,7 +139,11 @@ UNKNOWN = f"Without a current record, the currents are inferred from the pressur
 
 
 def motion_part(study: MotionEstimate, name: str) -> ReportPart:
-    """Build the terminal report: common factors, sensors, withheld sensors, and doubts."""
+    """Build the terminal report.
+
+    The tables give the estimated factors, the agreement with each sensor, and the errors at
+    withheld sensors. Sentences on doubts about the data follow.
+    """
     shown: tuple[blocks.Block, ...] = (
         blocks.Heading(name),
         factors_table(study.factors, study.task.common.datum),
@@ -212,9 +216,9 @@ def factors_table(factors: Mapping[str, tuple[float, float, float]], datum: floa
 
 
 def sensors_table(study: MotionEstimate) -> Table:
-    """Tabulate how well the computed line agrees with each sensor.
+    """Tabulate the agreement of the computed line with each sensor.
 
-    There are two computed lines: from the currents alone, and with the estimated factors.
+    The line is computed twice: from the currents alone, and with the estimated factors.
     """
     rows = [(alone, label) for label, alone in (study.plain or study.sensors).items()]
     alone = blocks.of_first(
@@ -259,9 +263,9 @@ def motion_document(
 ) -> dict[str, Any]:
     """Return the JSON object of a motion study: factors with 95 % intervals, and depth errors [m].
 
-    `sensors` gives the agreement of each sensor with the estimate. Its key `plain` gives the
-    agreement with the line computed from currents alone. `held_out` lists withheld sensors, `read`
-    the input files.
+    Each entry of `sensors` gives the agreement of a sensor with the estimate. In this entry, the
+    key `plain` gives the agreement with the line computed from currents alone. `held_out` lists
+    withheld sensors. `read` lists the input files.
     """
     sensors = [
         {"label": label, **_agreement_document(fit), "offset": float(offset)}
@@ -374,9 +378,10 @@ def _draw_depths(
 
 
 def false_figure(time: Any, false: Mapping[str, Any]) -> str:
-    """Draw a row of marks for each current level, at the times of apparently false currents.
+    """Draw marks at the times of apparently false currents, with a row for each current level.
 
-    `time` are the (n,) times of the record; `false` has times by level.
+    `time` is the (n,) times of the record. `false` is the times of false currents, by name of the
+    level.
     """
     names = list(false)
     left = min(max(text_width(name, _SIZE) for name in names) + 12.0, 0.4 * _WIDTH)

@@ -31,7 +31,10 @@ OPEN = (State.FAIL, State.UNKNOWN, State.WARN, State.ACCEPTED, State.ESTIMATED, 
 """States of open items, in the order of the list."""
 
 _EXPLAINED = ("planned-depth", "as-deployed", "reserve", "freeboard")
-"""Rules whose messages explain their values, which are differences or fractions."""
+"""Rules whose open items show the message instead of the value and the limit.
+
+The values of these rules are differences or fractions, which the message explains.
+"""
 
 _VALUE_NAMES = {
     "current": "current", "stretch": "stretch", "strength-steps": "strength",
@@ -40,15 +43,19 @@ _VALUE_NAMES = {
     "slack": "tension", "wave-slack": "tension", "watch-circle": "radius",
     "metals": "potential difference", "backup": "net buoyancy", "recovery": "rise speed",
 }  # fmt: skip
-"""Names of the checked values, for rules whose quantity has a different or more general name."""
+"""Names of the checked values, by rule.
+
+The quantities of these rules have more general or different names.
+"""
 
 _NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine")
 
 
 def plain(text: str, *, keys: bool = False) -> str:
-    """Format a message for print, with keys as words in quotes and no line break before a unit.
+    """Format a message for print.
 
-    If `keys` is true, as for a terminal, keys are written as in the file, in backticks.
+    Keys become words in quotes. A line never breaks between a number and its unit. If `keys` is
+    true, as for a terminal, keys are written as in the file, in backticks.
     """
     if not keys:
         text = re.sub(r"`([^`]*)`", _quoted, text)
@@ -71,7 +78,10 @@ def short(text: str, most: int) -> str:
 
 
 def figure_text(finding: Finding, name: Literal["value", "limit"] = "value") -> str:
-    """Format the value or the limit of a finding, in a unit that suits both; "" if unknown."""
+    """Format the value or the limit of a finding; "" if unknown.
+
+    Value and limit have the same unit, which depends on both.
+    """
     value, quantity = getattr(finding, name), QUANTITIES.get(RULES[finding.rule].quantity)
     if value is None or quantity is None:
         return ""
@@ -115,9 +125,9 @@ def open_groups(assessment: Assessment) -> list[list[Finding]]:
     A group contains findings of one kind:
 
     - failures, unknowns or warnings that differ only in component and values
-    - estimates for one component, unless its missing values are listed
-    - acceptances for one component with the same reason
-    - findings of one rule that are not judged
+    - estimates for one component, unless another group asks for the estimated values
+    - acceptances for one component with the same reason and signature
+    - findings of one rule with the state `NOT_JUDGED`
     """
     use = {one.label: one.use for one in assessment.inventory}
     return groups_of(assessment.every_finding(), use)
@@ -302,7 +312,8 @@ def _capitalised(text: str) -> str:
 def draft(assessment: Assessment) -> bool:
     """Return whether a report is a draft, which must not be signed.
 
-    A draft lacks a number, revision or date, or relies on an acceptance from an example.
+    A report is a draft if its document has no number, revision or date. A report is also a draft if
+    an acceptance is signed with the placeholder of the example files.
     """
     document = assessment.file.document
     given = document is not None and all((document.id, document.revision, document.date))

@@ -219,7 +219,10 @@ def _all_case_columns() -> tuple[_CaseColumn, ...]:
 
 
 def case_columns(cases: Sequence[LoadCase]) -> list[blocks.Field]:
-    """Return the columns for which at least one load case has a value, without bold cells."""
+    """Return the columns in which at least one load case has a value.
+
+    No value in these columns is bold.
+    """
     known = [one for one in _all_case_columns() if any(one.value(case) for case in cases)]
     return [figure.field(nan) for figure in known]
 
@@ -463,7 +466,7 @@ def drawn_parts(
 
 
 def item_tags(signed: SignedMooring) -> dict[tuple[str, str | None], str]:
-    """Return the mark and number of the first open item for each pair of rule and component."""
+    """Return the mark and number of the first open item, by rule and component."""
     tags: dict[tuple[str, str | None], str] = {}
     for item, group in zip(signed.items, open_groups(signed.assessment), strict=True):
         for one in group:

@@ -183,7 +183,10 @@ def environments_table(waters: Iterable[tuple[str, Water]]) -> blocks.Table:
 
 
 def current_listing(name: str, water: Water) -> Listing:
-    """List the current used in the computation, at no more than `_MOST_LEVELS` of its levels."""
+    """List the current that the computation used.
+
+    At most `_MOST_LEVELS` levels of the current are listed.
+    """
     count = len(water.level)
     chosen = np.unique(np.linspace(0, count - 1, min(count, _MOST_LEVELS)).round().astype(int))
     lines = [f"{'depth m':>10} {'speed m/s':>10} {'toward °':>10} {'upward m/s':>11}"]
@@ -246,7 +249,8 @@ def degrees_text(degrees: float, sides: str, digits: int) -> str:
 def inputs_part(inputs: Sequence[tuple[str, MooringFile, Water]]) -> ReportPart:
     """Report the inputs: environments, mooring file, currents, hash and versions.
 
-    `inputs` has the name, file and water of each environment, for each leg of a net.
+    Each of `inputs` is the name of an environment, the mooring file, and the water in this
+    environment.
     """
     files = [file for _, file, _ in inputs]
     waters = list({name: water for name, _, water in reversed(inputs)}.items())[::-1]

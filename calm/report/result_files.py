@@ -37,9 +37,9 @@ def header() -> tuple[str, ...]:
 def to_csv(results: Sequence[Result]) -> str:
     """Write the components of one or several moorings or tows as CSV text.
 
-    The row of a clamped instrument follows the row of its piece. Such a row has equal values for
-    the upper and the lower end, and no length. Unknown numbers are empty. With a net, the last
-    column names the leg of the net. Lines end in LF.
+    The row of a clamped instrument follows the row of its piece. The row of a clamped instrument
+    has equal values for the upper and the lower end, and no length. Unknown numbers are empty. With
+    a net, the last column names the leg of the net. Lines end in LF.
     """
     rows = [row for result in results for row in _rows(result)]
     more = shown_in(OF_ROWS, Output.CSV)
@@ -122,7 +122,10 @@ def result_netcdf(result: Result) -> bytes:
 def _table_variables(
     dimension: str, table: Components | Clamps, beside: str
 ) -> list[netcdf.Variable]:
-    """Create the NetCDF variables of a table; `beside` names their coordinate variables."""
+    """Create the NetCDF variables of a table.
+
+    `beside` is the names of the coordinate variables.
+    """
     columns = table.columns(Output.NETCDF)
     figures = _as_floats({one.variable: getattr(table, one.name) for one in columns})
     return numbers((dimension,), terms(columns), beside, figures)

@@ -80,8 +80,8 @@ _ENDS = ("5 %", "50 %", "95 %")
 def uncertainty_part(uncertain: Uncertain) -> ReportPart:
     """Report the uncertainty of a result, within 80 columns.
 
-    The report gives the 5th, 50th and 95th percentiles of values at ends and pieces, and the causes
-    of the spread.
+    The report gives the 5th, 50th and 95th percentiles of values at the ends of the line and on
+    each piece. A table shows how much each uncertain input contributes to the spread.
     """
     each = ", ".join(f"{count} {status}" for status, count in uncertain.failures.items())
     failures = f"{uncertain.failed} of {uncertain.samples} samples have no equilibrium ({each})"

@@ -94,7 +94,10 @@ def quality_of(result: LegResult) -> Prose:
 
 
 def accuracy_text(results: Sequence[LegResult]) -> str:
-    """Describe the numerical error of several results, and the larger uncertainty of the inputs."""
+    """Describe the numerical error of several results.
+
+    The text adds that the uncertainty of the inputs is larger.
+    """
     depth = max(one.accuracy.depth for one in results)
     share = max(
         100.0 * one.accuracy.tension / max(float(one.components.tension.max()), 1.0)
@@ -335,7 +338,7 @@ def leg_titles(result: Result) -> dict[str, str]:
 def end_descriptions(line: LegResult) -> tuple[str | None, str | None]:
     """Describe the connections of the upper and the lower end of a leg.
 
-    The description is None for a free upper end and for a lower end with an anchor.
+    The result for a free upper end, or for a lower end with an anchor, is None.
     """
     top, bottom = line.leg.top, line.leg.bottom
     return (

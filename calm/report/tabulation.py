@@ -42,7 +42,7 @@ _KNOTS = replace(QUANTITIES["speed"], display="knot")
 
 @dataclass(frozen=True)
 class TabulationRow:
-    """Result of a tow at one ship speed over the ground [m/s], or the reason why there is none."""
+    """Result of a tow at one ship speed over the ground [m/s], or the reason for a failure."""
 
     speed: float
     outcome: Result | NoEquilibrium
@@ -97,7 +97,7 @@ class Tabulation:
 def by_speed(
     tow: Design, speeds: Sequence[float], outcomes: Sequence[Result | NoEquilibrium]
 ) -> Tabulation:
-    """Combine the outcomes of the solver at ship speeds over the ground [m/s] into a tabulation."""
+    """Create a tabulation from ship speeds over the ground [m/s] and the outcome at each speed."""
     rows = map(TabulationRow, speeds, outcomes)
     return Tabulation(tow.file.name, tuple(rows))
 
@@ -105,9 +105,9 @@ def by_speed(
 def to_document(tabulation: Tabulation) -> dict[str, Any]:
     """Return the JSON object of a table, with one object per ship speed.
 
-    Each object has `speed`, `status` and the keys of `FIGURES` (SI and degrees). `frequency` is
-    absent unless the cable strums. Warnings or, without an equilibrium, `message` and `advice`
-    follow.
+    Each object has `speed`, `status` and the keys of `FIGURES` (SI and degrees). The key
+    `frequency` is absent unless the cable strums. With an equilibrium, the object also has
+    `warnings`. Without an equilibrium, the object has `message` and `advice`.
     """
     return {
         "calm": __version__,
@@ -144,8 +144,8 @@ def _row_document(tabulation: Tabulation, row: TabulationRow) -> dict[str, Any]:
 def tabulation_part(tabulation: Tabulation) -> ReportPart:
     """Build the table with one row per speed, within 80 columns.
 
-    Rows without an equilibrium show the status of the solver. Common warnings follow the table;
-    other warnings give a mark in their row.
+    Rows without an equilibrium show the status of the solver. Warnings common to all rows follow
+    the table. A row with another warning is marked ``!``.
     """
     speed = QUANTITIES["speed"]
     names = [name for name in FIGURES if name != "frequency" or tabulation.strumming]
@@ -231,7 +231,10 @@ def _draw_panel(
     name: str,
     level: str = "",
 ) -> Axes:
-    """Draw a panel with the curve of a column and, if `level` is a colour, a line at zero."""
+    """Draw a panel with the curve of the column `name`.
+
+    `level` is the colour of a line at zero. If `level` is empty, the line is not drawn.
+    """
     place = _LEFTS[number], _TOP, _PANEL, _HEIGHT - _TOP - _LOW
     axes = page.axes(*place, across, up)
     if level:

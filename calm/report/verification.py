@@ -25,7 +25,7 @@ def verification_document(findings: Findings) -> dict[str, Any]:
 
     The keys are:
 
-    - `checked`: number of values that do not agree by construction
+    - `checked`: number of values, without values of the kind "by construction"
     - `kinds`: number of values of each kind
     - `out`: number of values out of tolerance
     - `cases`: one object per value, in which `why` is the reason for the tolerance and `reason`

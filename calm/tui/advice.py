@@ -124,7 +124,8 @@ def _offers_for(finding: Finding, mooring: Design) -> Iterator[Offer]:
 def _anchors(view: View, catalogue: Catalogue, catalogs: Sequence[str | Path]) -> Iterator[Offer]:
     """Suggest the lightest anchor of the catalogue that holds in every environment and situation.
 
-    For an anchor that CALM's own catalogue does not define, also suggest a weight.
+    If CALM's own catalogue does not define the present anchor, a weight for this anchor is also
+    suggested.
     """
     loads = view.held or held_lines(view, catalogs)
     if view.file is None or not loads:

@@ -38,8 +38,8 @@ class BuildApp(App[int]):
     """The line builder.
 
     Keys, pastes and mouse presses are handled one after the other, even if typed ahead. A screen
-    opened by a key is thus open before the next key is handled. A key is handled once all message
-    queues that the key may have filled are empty.
+    opened by a key is thus open before the next key is handled. Before each key, the application
+    waits until the widgets and screens concerned have handled all their messages.
 
     Parameters
     ----------
@@ -176,7 +176,7 @@ class BuildApp(App[int]):
 
     @cached_property
     def output(self) -> TerminalOutput:
-        """Output of the driver, which sends only changed cells to the terminal."""
+        """Output of the terminal driver. Only changed cells are sent to the terminal."""
         return TerminalOutput()
 
     def on_cursor_position(self) -> None:

@@ -70,7 +70,8 @@ class ComponentList(TableCells, can_focus=False):
     ) -> None:
         """List components in the given order, and move the cursor to the first component.
 
-        `by` is a quantity whose column must be visible. `favourites` are component ids.
+        If the components are sorted by a quantity, `by` is this quantity, and its column is always
+        shown. `favourites` are component ids.
         """
         before, columns = self.rows, self.columns
         cursor, like = self.cursor, (self._index, self._favourites)
@@ -143,8 +144,9 @@ _TITLES = {
 class CataloguePane(Vertical):
     """Pane with a search field, the components found, and the card of the chosen component.
 
-    The pane also asks for the length of a new cable and the position of a new clamp. `take`
-    receives the purpose of the search and the keys of the row; `close` returns to the line.
+    The pane also asks for the length of a new cable and the position of a new clamp. `take` is
+    called with the purpose of the search, and with the keys and values of the new row. `close`
+    returns to the line.
     """
 
     BINDINGS = key_table.bindings("catalogue")
@@ -207,11 +209,11 @@ class CataloguePane(Vertical):
     def open(
         self, purpose: Purpose, target: str, role: str = "", *, clampable: bool = False
     ) -> None:
-        """Open the search for a component, with favourites first.
+        """Open the search for a component.
 
-        Until the user types, components with the given role, recent components and components of
-        the line follow. `target` is the name of the row next to which the component is added.
-        `clampable` limits the list to components that can be clamped on.
+        Until the user types, the favourites are first in the list. Components with the given role
+        are next, followed by recent components and components of the line. `target` is the row name
+        in the title of the pane. `clampable` limits the list to components that can be clamped on.
         """
         self.purpose, self.clampable, self._role = purpose, clampable, role
         self.retitle(target)

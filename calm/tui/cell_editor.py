@@ -106,7 +106,10 @@ class EditableTable(Vertical):
             self.go_on(then, text)
 
     def abandon(self, reason: str = "") -> None:
-        """Cancel editing; if a `reason` is given, show why an invalid text was discarded."""
+        """Cancel editing.
+
+        If an invalid text is discarded, `reason` is the error message to show.
+        """
         self.leave_cell()
         self.abandoned()
         if reason:

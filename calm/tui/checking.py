@@ -162,8 +162,14 @@ def distance(before: str = "") -> Check:
 def length(before: str = "", *, towed: bool = False) -> Check:
     """Return a check for the length of a piece.
 
-    Valid texts are a length, a length under load (``98 m at 2 kN``), or ``fit`` with the depth of
-    the top (of the lower end if `towed`). A bare number gets the unit of `before`.
+    Valid texts are:
+
+    - a length
+    - a length under load, such as ``98 m at 2 kN``
+    - ``fit`` and the required depth of the top, such as ``fit 105 m``; for a tow (`towed`), the
+      depth of the lower end
+
+    A bare number gets the unit of the previous text, `before`.
     """
     plain = quantity(POSITIVE_LENGTH, usual_unit=unit_of(before))
     depth = quantity(QuantityField("length") if towed else LENGTH, usual_unit=unit_of(before))

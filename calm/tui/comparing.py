@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 _MOST_LINES = 24
 _MOST_OFFERS = 9
 _DOCUMENTS = {"report": ("check", "--report"), "deck": ("deck", "--output")}
-"""Command that writes each document, and the option of the command for the output folder."""
+"""Command, and its option for the output folder, for each kind of document."""
 
 
 class ComparingScreen(line_screen.LineScreen):

@@ -31,7 +31,8 @@ class ComponentScreen(dialogs.Form[Defined]):
 
     Parameters
     ----------
-    listed, own : ids in the catalogue, and ids of the file, which cannot be used again
+    listed : ids in the catalogue
+    own : ids of components in the file; a new component cannot have one of these ids
     begun : id and all keys of the component to change; None for a new component
     """
 
@@ -157,8 +158,7 @@ _FIRST = ("name", "manufacturer", "role")
 def form_fields(kind: str) -> list[FormField]:
     """Return the form fields for a kind of component.
 
-    Names come first, followed by required keys, other keys of the kind, and keys common to all
-    kinds.
+    The order is: fields for names, required keys, other keys of the kind, keys common to all kinds.
     """
     fields = [each for each in form_of(KINDS[kind]) if each.key != "kind"]
 

@@ -23,7 +23,7 @@ from calm.tui.key_table import bindings
 
 
 class ScrolledEntry(Input):
-    """Text input that leaves a paste of several lines to its container."""
+    """Text input that passes a paste of several lines to its parent widget."""
 
     virtual_size = Reactive(Size(0, 0), repaint=False)
 

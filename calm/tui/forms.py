@@ -46,7 +46,7 @@ class FormField:
     key : name of the field, or path of the edited key of the file, such as `position.latitude`
     takes : description shown next to the field
     above : heading of a group that begins with this field
-    columns : columns of a table, whose rows are in `text`
+    columns : for a table, its columns; `text` then contains the rows
     is_needed : whether the model requires this key
     """
 
@@ -122,7 +122,10 @@ def _reading_of(model: type[BaseModel], name: str, needed: bool, text: str) -> R
 
 
 def _columns(members: tuple[Any, ...]) -> tuple[FormColumn, ...]:
-    """Return the table columns for a list of models or fixed-length rows, else ()."""
+    """Return the table columns for a list of models or for a list of fixed-length rows.
+
+    For any other type, the result is empty.
+    """
     if len(members) != 1 or get_origin(members[0]) is not tuple:
         return ()
     row = get_args(members[0])[0]

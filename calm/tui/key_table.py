@@ -211,7 +211,7 @@ dismiss | escape,q,enter,question_mark,f1 | close |  | Close the help.
 """Actions of each part of the builder, under the heading of that part in the help.
 
 Each row is: name | keys | title | rank in the key bar | meaning. Lines that begin with a blank
-continue the meaning. A ``-`` as rank excludes the action from the palette.
+continue the meaning. If the rank is ``-``, the command palette does not list the action.
 """
 
 

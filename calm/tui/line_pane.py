@@ -49,10 +49,10 @@ class LinePane(LineSearch):
         return not self.editor.is_open and (bool(self.table.rows) or action not in _FROM_A_ROW)
 
     def show_rows(self) -> None:
-        """Show the rows of the draft, with the latest results or mistakes.
+        """Show the rows of the draft, with the results or the mistakes of the latest view.
 
-        If there are neither results nor mistakes, show the results of the last draft with an
-        equilibrium.
+        If the latest view has neither results nor mistakes, the rows show the results of the last
+        draft with an equilibrium.
         """
         workspace, view = self.workspace, self.workspace.view
         workspace.refresh_index()

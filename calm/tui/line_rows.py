@@ -43,8 +43,9 @@ def table_rows(
 ) -> list[TableRow]:
     """Return the rows of the line table, one for each item and clamp.
 
-    An item of several pieces shows the least favourable values. Results for an earlier text are
-    shown only in rows with unchanged component and label, and never in `added` rows.
+    An item of several pieces shows the least favourable values. If the view belongs to an earlier
+    text, only rows with unchanged component and label show results. New rows (`added`) never show
+    results of an earlier text.
     """
     found = _results_by_row(draft, view, added)
     wrong = _items_with_mistakes(draft, view)
@@ -204,7 +205,10 @@ class LineCell:
             self.workspace.session.put({self.spot: given}, f"change the {name}")
 
     def values_of(self, text: str) -> dict[str, Value | None]:
-        """Return the keys of the row that a text changes, with new values; None deletes a key."""
+        """Return the changes to the row after a text is entered, as new values by key.
+
+        The value None deletes a key.
+        """
         written = self._values
         if text == self.text:
             return {}

@@ -55,7 +55,7 @@ class View:
         replaced by an anchor that holds any load.
     failure : reason why the line has no equilibrium
     findings : findings of the design check; empty for a tow
-    tighter : findings in other situations with a higher utilisation than in `findings`
+    tighter : findings in other situations, if their utilisation is larger than in `findings`
     environments : names of the environments besides the default environment
     rows : results of each piece and clamp in file order; clamps follow their piece
     complete : whether `findings` has all findings of `calm check`; true for a solved tow
@@ -94,7 +94,7 @@ class View:
 
     @property
     def here(self) -> str:
-        """Name of the current environment, as used in the findings."""
+        """Name by which the findings refer to the current environment."""
         return OWN if self.file is None else self.file.environment.name or OWN
 
     @property
@@ -162,8 +162,8 @@ def judge_fully(view: View, catalogs: Sequence[str | Path] = ()) -> View:
 class HeldLine:
     """A line solved in one environment and situation, with an anchor that holds any load.
 
-    `when` names the environment and the situation, except the environment of the view and the
-    situation as given.
+    The text `when` names the environment, unless it is the environment of the view. The text also
+    names the situation, unless it is the situation as given.
     """
 
     when: str
@@ -226,7 +226,8 @@ def in_all_environments(
 ) -> tuple[list[Design], list[Problem]]:
     """Return a mooring in each environment, and mistakes in environments that cannot be read.
 
-    In each environment, the pieces have their cut lengths from the design `here`.
+    `here` is the design in the environment of the view. Its cut lengths are used in all
+    environments.
     """
     found: list[Design] = []
     problems: list[Problem] = []

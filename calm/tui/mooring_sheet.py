@@ -60,8 +60,8 @@ def settings() -> list[str]:
 def sheet_of(name: str, draft: Draft, part: Piece | Clamp | None) -> Sheet:
     """Create a sheet that shows the values in the file.
 
-    `name` is a sheet in `SHEETS` or a section from `settings`; `part` is in the row under the
-    cursor.
+    `name` is a sheet in `SHEETS` or a section from `settings`. `part` is the piece or clamp in the
+    row under the cursor.
     """
     fields = MooringKeys.model_fields
     title, keys = SHEETS.get(name, (name.capitalize(), (name,)))
@@ -82,7 +82,7 @@ def _top_level(key: str) -> list[FormField]:
 
 
 def part_of_row(file: MooringFile | None, spot: Place | None) -> Piece | Clamp | None:
-    """Return the piece or clamp of a row, or None if the row has several or none."""
+    """Return the piece or clamp of a row; None unless the row is exactly one piece or clamp."""
     found = [part for part in parts_of(file.pieces if file else ()) if part.place.row == spot]
     return found[0] if len(found) == 1 else None
 
@@ -164,9 +164,10 @@ def serial_of_equipment(text: str) -> Reading:
 
 
 def entry_text(draft: Draft, rows: Location, called: tuple[str, str], key: str) -> str:
-    """Return the text of a key in an entry of a list in the file, or "" without an entry.
+    """Return the text of a key in one entry of a list in the file.
 
-    `rows` is the path of the list. `called` is the key and text that identify the entry.
+    `rows` is the path of the list. `called` identifies the entry by one of its keys and the text of
+    this key. Without such an entry, the result is "".
     """
     index = _index(draft, rows, called)
     return "" if index is None else draft.text_at((*rows, index, key))
@@ -237,9 +238,10 @@ class Missing:
     Attributes
     ----------
     labels : labels of the pieces and clamps concerned
-    targets : locations in the file to which each missing value is written, by key. The location is
-        the definition of the component in the file. Without a definition, the locations are all
-        rows that lack the value. A part of an assembly has the row of the assembly.
+    targets : for each key, the locations in the file to which the missing value is written. If the
+        file defines the component, the location is this definition. Otherwise, the locations are
+        all rows that lack the value. For a part of an assembly, the location is the row of the
+        assembly.
     estimates : estimates for the class of component, by key, without their source
     """
 

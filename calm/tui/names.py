@@ -107,7 +107,11 @@ def followed(before: Draft, after: Draft, moved: Mapping[Place, Place]) -> tuple
 def _new_reference(
     text: str, wanted: set[str], renamed: Mapping[str, str], labels: Iterable[str]
 ) -> str | None:
-    """Return a new text with which a reference matches the new labels, or None."""
+    """Return a new text for a reference to renamed pieces.
+
+    The new text must match all labels in `wanted` and no others. If no such text is found, the
+    result is None.
+    """
     labels = list(labels)
     if text in renamed:
         return renamed[text]
@@ -128,7 +132,10 @@ def references_to(draft: Draft, place: Place) -> list[Named]:
 
 
 def with_extended_acceptances(draft: Draft, named: Iterable[Named]) -> Draft:
-    """Extend accepted findings from single pieces to all pieces with the same base name."""
+    """Extend the acceptances of findings on single pieces to copies of these pieces.
+
+    For example, the label ``glass`` becomes the pattern ``glass *``.
+    """
     for each in named:
         if each.location[0] == "checks" and not each.text.endswith("*"):
             draft = draft.put_at(each.location, f"{each.text} *")

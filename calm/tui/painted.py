@@ -18,9 +18,9 @@ from rich.cells import cell_len
 from textual.driver import Driver
 
 Cell = tuple[str, str]
-"""A character and its style, as SGR codes (ECMA-48).
+"""A character and the SGR codes of its style (ECMA-48).
 
-A wide character has a second cell without a character.
+A wide character is followed by a cell without a character.
 """
 
 _TOKEN = re.compile(
@@ -45,7 +45,10 @@ _PLAIN = "\x1b[0m"
 _WHERE = "\x1b[6n"  # request of the cursor position (ECMA-48)
 _PATIENCE = 3.0  # seconds to wait for an answer
 _GAP = 8
-"""Minimum length of a run of unchanged cells that is skipped, as a shorter run costs little."""
+"""Maximum gap between changed cells that are sent together [cells].
+
+The unchanged cells in a longer gap are not sent again.
+"""
 
 
 class Painted:
@@ -74,7 +77,10 @@ class Painted:
         self._touched.update(range(len(self._wanted)))
 
     def take(self, text: str) -> str:
-        """Store the cells of an output text; return other output, which must be sent at once."""
+        """Store the cells of an output text, and return the rest of the output.
+
+        The rest does not consist of cells, and must be sent at once.
+        """
         text = self._rest + text
         cut = _INCOMPLETE.search(text)
         self._rest = text[cut.start() :] if cut else ""

@@ -200,7 +200,7 @@ class TableCells(Scrolled, inherit_bindings=False):
         raise NotImplementedError
 
     def look(self, name: str) -> Style:
-        """Return the style of a component class, without the style of the widget."""
+        """Return the style of a component class of Textual, without the style of the widget."""
         return self.get_component_rich_style(name, partial=True)
 
     def row_style(self, number: int) -> Style:

@@ -154,7 +154,7 @@ class Session:
     def replace(self, spot: Place, values: Mapping[str, Value]) -> list[str]:
         """Replace the component of a row.
 
-        Return the values in the row that were set for the previous component and still apply.
+        Return the other values of the row, which were set for the previous component and are kept.
         """
         kept = [
             f"{key} {value}" if isinstance(value, str) else key
@@ -187,7 +187,7 @@ class Session:
     def duplicate(
         self, spots: Iterable[Place], also: Sequence[Named] = (), times: int = 1
     ) -> Place | None:
-        """Insert copies of rows below the last of the rows, and return the first copy.
+        """Insert copies of rows below the last of these rows, and return the first copy.
 
         The references in `also` are extended to the copies.
         """
@@ -214,7 +214,7 @@ class Session:
     def move(self, spots: Iterable[Place], by: int) -> tuple[Place, ...]:
         """Move pieces or a single clamp up (-1) or down (1), and return their new rows.
 
-        Nothing moves beyond the end of the line, or of the clamps of a piece.
+        A piece does not move beyond the end of the line. A clamp does not leave its piece.
         """
         chosen = _whole(spots)
         moved = [spot for spot in chosen if not spot.is_clamp] or chosen
@@ -291,7 +291,10 @@ class Session:
         return lost
 
     def save_as(self, path: Path) -> str:
-        """Save to another path, which is edited from then on; return the same note as `save`."""
+        """Save to another path, and edit the file at this path from then on.
+
+        Return the same note as `save`.
+        """
         before, self.file = self.file, WorkingFile(path)
         try:
             lost = self.save()
@@ -304,7 +307,10 @@ class Session:
     # backup in case of a crash
 
     def note_unsaved(self) -> WorkingFile:
-        """Pass unsaved text to the working file for its next backup copy, and return the file."""
+        """Pass unsaved text to the working file, and return the working file.
+
+        The next backup copy of the working file contains this text.
+        """
         self.file.unsaved = self.draft.text if self.changed else None
         return self.file
 

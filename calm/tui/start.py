@@ -47,7 +47,10 @@ def open_session(
 
 
 def _refuse_other_files(session: Session) -> None:
-    """Raise an exception for mistakes in other files, which the builder cannot edit."""
+    """Raise an exception if the environment is unknown, or if another file has mistakes.
+
+    The builder cannot correct mistakes in catalogue files and environment files.
+    """
     Catalogue.load(session.catalogs)
     here, names = session.choice.environment, session.choice.environments
     if (lost := session.choice.lost_environment) is not None:

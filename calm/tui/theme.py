@@ -69,7 +69,7 @@ PICTURE_DARK = _palette(
 PICTURE_LIGHT = _palette(
     "f7f9fa", "16222b", "16222b b3261e 1e7d34 8a6100 1f56a8 6a3fa0 0c7a70 e6ecf0"
 )
-"""The eight colours of pictures and verdict in a theme."""
+"""Colours of the pictures and of the verdict in the light theme."""
 
 
 def choose_theme(environ: Mapping[str, str]) -> str:
@@ -90,18 +90,18 @@ _LEAST_CONTRAST = 4.5
 _OWN = Ink.default()
 _ON_DARK = {1: 9, 2: 2, 3: 11, 4: 6, 6: 6, 7: 7, 9: 9, 10: 10, 11: 11, 12: 6, 14: 14, 15: 15}
 _ON_LIGHT = {0: 0, 1: 1, 4: 4}
-"""Replacement for each of the sixteen terminal colours; any other colour becomes the terminal's
-text colour.
+"""Replacements of the sixteen terminal colours on a light background.
 
-A terminal with eight colours lacks the bright ones, and also keeps its own colours.
+A colour that is not listed becomes the text colour of the terminal. The replacements also suit a
+terminal with eight colours, which has no bright colours.
 """
 
 
 class Legible(LineFilter):
-    """Line filter that makes text legible on any background of a theme or a picture.
+    """Line filter that makes text legible on its background.
 
-    `dark` describes the background. With `sixteen`, the terminal uses its own colours, and the
-    exact background is unknown.
+    `dark` is true if the background is dark. If `sixteen` is true, the terminal uses its own
+    colours, and the exact background is unknown.
     """
 
     def __init__(self, *, dark: bool, sixteen: bool) -> None:
@@ -126,7 +126,10 @@ class Legible(LineFilter):
 
 @lru_cache(4)
 def legible(dark: bool, sixteen: bool) -> Legible:
-    """Return the filter for a dark or light background, always the same object."""
+    """Return the filter for a dark or light background.
+
+    Equal arguments always return the same filter object.
+    """
     # cached, because Textual caches the filtered lines by filter
     return Legible(dark=dark, sixteen=sixteen)
 

@@ -153,9 +153,9 @@ def _values_at_ends(
 def _values_of_mooring(
     result: LegResult, findings: Sequence[Finding], pending: bool, held: Sequence[HeldLine]
 ) -> Iterator[VerdictLine]:
-    """Yield values at the anchor and the top of the mooring as given.
+    """Yield values at the anchor and the top of the mooring, in the situation as given.
 
-    A value with a limit is followed by the value in its worst situation.
+    If a value with a limit is worse in another situation, the worst value follows.
     """
     from calm.checks.posture import knockdown, reserve
     from calm.checks.strength import anchor_weight

@@ -51,9 +51,10 @@ Place = tuple[str, ...]
 
 
 class WaterForm:
-    """Access to one environment in a file; None as `variant` is the default environment.
+    """Access to one environment in a file.
 
-    Every change raises EditError if the text of the file does not allow it.
+    `variant` is the name of the environment, or None for the default environment. Every change
+    raises EditError if the text of the file does not allow the change.
     """
 
     def __init__(self, draft: Draft, variant: str | None) -> None:
@@ -145,9 +146,10 @@ class WaterForm:
         return self._with_inherited_value(keys).put_at(self.at(*keys), value)
 
     def begun(self, keys: Place, form: str) -> Value | None:
-        """Return the initial value of a property in a new form, from known or typical values.
+        """Return the initial value of a property that the user changes to another form.
 
-        None means that the key can be omitted.
+        The initial value comes from the previous value of the property. If this is unknown, it is a
+        typical value. None means that the key can be omitted.
         """
         if keys == ("current",):
             return self._begun_current(form)

@@ -48,7 +48,7 @@ _ELSEWHERE = (
 )
 _INHERITED = "as in the default environment"
 _FORMS: dict[type[Widget], str] = {FormChoice: "", Field: "constant", ProfileGrid: "table"}
-"""Form of a property to which each type of widget belongs; "" for all forms."""
+"""Form that each type of widget edits, ``constant`` or ``table``; "" for any form."""
 
 
 class WaterScreen(screen.DraftScreen):
@@ -106,7 +106,7 @@ class WaterScreen(screen.DraftScreen):
 
     @property
     def environment_file(self) -> str | None:
-        """Environment file from the command line if its environment is shown, otherwise None."""
+        """Path of the displayed environment file; None for an environment of the mooring file."""
         choice, draft = self.session.choice, self.session.draft
         here = choice.environment
         return None if here in choice.environments or draft.problems else here
@@ -172,7 +172,10 @@ class WaterScreen(screen.DraftScreen):
         return bool(form) and key in ("density", "current") and water.form(*place) != form
 
     def replaced(self) -> None:
-        """Show a new draft; discard typed text and the values remembered from other forms."""
+        """Show a new draft, and discard typed text.
+
+        The values that a property had in its earlier forms are discarded, too.
+        """
         self._left.clear()
         self.discard_typing()
         self.show_draft()
@@ -180,7 +183,10 @@ class WaterScreen(screen.DraftScreen):
     # changes
 
     def change(self, make: Callable[[WaterForm], Draft], label: str, message: str = "") -> bool:
-        """Change the file; return whether the change succeeded, or show why not."""
+        """Change the file; return whether the change succeeded.
+
+        If the change fails, a message shows the reason.
+        """
         is_made, _ = self.workspace.attempt(lambda: self.session.do(make(self.water), label))
         self.show_draft()
         if is_made:

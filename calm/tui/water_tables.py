@@ -82,8 +82,9 @@ def imported(path: Path, time: str, depth: float) -> tuple[Sequence[str], Sequen
 
     Returns
     -------
-    columns : depth [m], and either speed [m/s] and direction [degrees] or velocities [m/s],
-        whichever needs fewer digits; always velocities if one is upward
+    columns : depth [m], and either speed [m/s] and direction [degrees], or velocities [m/s]. The
+        table has the columns that need fewer digits. A table with vertical velocities always has
+        velocities.
     rows : one row for each level, from the top, with all digits of the file
 
     Raises
@@ -110,7 +111,7 @@ def imported(path: Path, time: str, depth: float) -> tuple[Sequence[str], Sequen
 def _written(value: float) -> str:
     """Format a value with all its significant digits.
 
-    A number of 32-bit precision gets no further digits, which would be rounding noise.
+    The additional digits of a number with 32-bit precision are rounding noise, and are omitted.
     """
     short = float32(value)
     if isclose(short, value, rel_tol=_NOISE):
@@ -162,7 +163,9 @@ def offered_headings(headings: Sequence[str] | None, columns: Sequence[str]) -> 
 
 
 def rows_in(columns: Sequence[str], headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Rows:
-    """Convert copied rows to the columns of a table; equal columns keep their texts.
+    """Convert copied rows to the columns of a table.
+
+    If the headings of the rows are those of the table, the texts are kept as typed.
 
     Raises
     ------

@@ -181,7 +181,10 @@ class Judging:
             self._show()
 
     def ask(self) -> None:
-        """Solve and check the draft; a busy worker continues with the latest draft when free."""
+        """Solve and check the draft.
+
+        If a worker is busy, it first finishes its work, and then continues with the latest draft.
+        """
         self._is_stale = False
         self._stop_waiting()
         if self._is_judging:

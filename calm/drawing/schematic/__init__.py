@@ -48,12 +48,12 @@ _MOORED_AT, _TOWED_AT = 26.0, 46.0
 def schematic_svg(file: MooringFile, result: AnyResult | None = None) -> str:
     """Draw the schematic of a line as one SVG picture.
 
-    Beyond about 50 parts, the picture is longer than an A4 page. The picture has no external
-    references, identifiers or style sheets. Texts are never cut. The same line always gives the
-    same picture.
+    The picture of a line with more than about 50 parts is longer than an A4 page. The picture has
+    no external references, identifiers or style sheets. Texts are never cut. The same line always
+    gives the same picture.
 
-    Without a result, depths are those of the upright, unstretched line, and unknown if the line is
-    towed or reaches the surface.
+    Without a result, the depths are those of the upright, unstretched line. The depths of a tow, or
+    of a line that reaches the surface, are then unknown.
     """
     (drawn,) = _draw_sheets(schematic_of(file, result), inf)
     return drawn
@@ -108,7 +108,10 @@ def _draw_sheets(shown: Schematic, most: float) -> list[str]:
 
 
 def _equal_groups(parts: Sequence[PlacedPart], room: float) -> list[list[PlacedPart]]:
-    """Divide parts into as few groups of height `room` as possible, of about equal height."""
+    """Divide parts into groups of about equal height.
+
+    There are as few groups as possible for a height of `room` per group.
+    """
     fewest = len([*divided(parts, room)])
     each = sum(one.height for one in parts) / fewest
     while len(groups := [*divided(parts, each)]) > fewest:
@@ -119,9 +122,10 @@ def _equal_groups(parts: Sequence[PlacedPart], room: float) -> list[list[PlacedP
 def _place_on_sheet(
     shown: Schematic, parts: Sequence[PlacedPart], top: float, *, first: bool
 ) -> tuple[float, tuple[PlacedPart, ...]]:
-    """Return the level of the sea surface, or of a helicopter's hook, and the parts with positions.
+    """Place the parts of one sheet; return the vertical position of the surface, and the parts.
 
-    On every sheet but the first, this level is the top of the sheet.
+    Under a helicopter, the returned position is that of the hook. On every sheet but the first, it
+    is the top of the sheet.
     """
     if not first:
         return top, placed(parts, top)
@@ -190,7 +194,8 @@ def column_of(
 ) -> LineColumn:
     """Compute the layout of a column; each column of values is as wide as its widest entry.
 
-    `line_at` is the distance of the line from the left edge. Symbols are twice as wide.
+    `line_at` is the distance of the line from the left edge. The symbols have this much space on
+    each side of the line.
     """
     cells = [[*heading] for heading in headings]
     for row in parts:
@@ -205,7 +210,7 @@ def column_of(
 class TextLine(NamedTuple):
     """A line of text next to a part, with its values and an optional text to the side.
 
-    `side_text` is written at the distance `at` from the start of the line.
+    `side_text` begins at the distance `at` from the left edge of `text`.
     """
 
     text: str
@@ -226,7 +231,7 @@ class TextLine(NamedTuple):
 class PlacedPart:
     """A part with its position in the picture and its texts.
 
-    `ends` are the positions of the upper and lower end of the line that is drawn through the part.
+    The line is drawn through the part, between the two vertical positions in `ends`.
     """
 
     part: ShownPart
@@ -244,10 +249,10 @@ class PlacedPart:
 def measured(
     parts: Sequence[ShownPart], column: LineColumn, growth: float = 1.0
 ) -> list[PlacedPart]:
-    """Compute the height of each part; the parts are not placed yet.
+    """Compute the height of each part, before the parts are placed.
 
-    The height of a cable grows with the logarithm of its length, at a rate that is multiplied by
-    `growth`.
+    The height of a cable increases with the logarithm of the cable length. The increase per decade
+    is multiplied by `growth`.
     """
     found = [_measured(part, column) for part in parts]
     for number, one in enumerate(found):

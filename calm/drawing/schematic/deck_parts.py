@@ -16,8 +16,9 @@ from calm.files.file_differences import own_labels
 from calm.quantities import QUANTITIES
 
 Cells = Callable[[Sequence[DeckItem], tuple[str, str]], tuple[str, ...]]
-"""Function that returns the values next to items, given the items and, as texts, their cut and
-stretched lengths.
+"""Function that returns the values next to items.
+
+The arguments are the items, and the texts of their cut length and stretched length.
 """
 
 
@@ -42,13 +43,14 @@ def parts_of(
     *,
     surface: bool,
 ) -> tuple[ShownPart, ...]:
-    """Convert the listed items of a line or leg of a net to parts, from the top down.
+    """Convert the listed items of a line, or of a leg of a net, to parts from the top down.
 
-    Consecutive connectors form one junction, unless they are listed separately.
+    Consecutive connectors form one junction. A connector is separate if it is marked `apart` or has
+    clamps.
 
     Parameters
     ----------
-    every : all items of the line, with labels chosen by the user
+    every : all items of the line, from which the labels chosen by the user are taken
     cells : function that returns the values next to a part
     surface : whether the line reaches the surface
     """

@@ -48,8 +48,8 @@ def schematic_text(
 ) -> str:
     """Draw the schematic of a line as text, with the columns of `schematic_svg`.
 
-    `width` is at least about 55 cells; labels and names are cut to fit. With `ascii_only`, labels
-    keep their letters.
+    `width` is at least about 55 cells. Labels and names are cut to fit. If `ascii_only` is true,
+    all symbols are ASCII characters, but letters in labels are not replaced.
     """
     schematic = schematic_of(file, result)
     lines = [

@@ -40,7 +40,8 @@ class ShownPart:
     sign : symbol to draw, with the number of the floats on a chain or cable
     rows : rows of text: two for a pair of releases, otherwise one
     labels : labels of the pieces in the part
-    cable : symbol of the cable that the part is or is clamped on; None for a rigid part
+    cable : symbol of the cable; for a clamped instrument, symbol of the cable under the clamp; None
+        for a rigid part
     length : length of a cable [m], NaN if unknown
     clamped : whether the part is clamped on the part above it
     junction : whether a page may end above the part
@@ -115,7 +116,7 @@ def schematic_of(file: MooringFile, result: AnyResult | None = None) -> Schemati
 
 
 def one_line(text: str) -> str:
-    """Convert a text to a single line, and replace characters that cannot be shown.
+    """Convert a text to a single line.
 
     Characters that XML or a terminal cannot show become a replacement character.
     """
@@ -123,7 +124,10 @@ def one_line(text: str) -> str:
 
 
 Cells = Callable[[str, float], tuple[str, ...]]
-"""Function that returns the values of a row, given length or position as text, and depth [m]."""
+"""Function that returns the values of a row.
+
+The arguments are the text of a length or clamp position, and a depth [m].
+"""
 
 
 def _parts(pieces: Sequence[Piece], cells: Cells, levels: Levels) -> Iterator[ShownPart]:

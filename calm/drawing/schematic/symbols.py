@@ -51,8 +51,8 @@ LINES = (Symbol.CHAIN, Symbol.WIRE, Symbol.ROPE)
 class Sign:
     """A symbol and the number of its repetitions.
 
-    `sounding` is true if the symbol contains an ADCP; `up` and `down` are true if the ADCP looks in
-    these directions.
+    `sounding` is true if the symbol contains an ADCP. `up` is true if the ADCP looks up, and `down`
+    is true if the ADCP looks down.
     """
 
     symbol: Symbol
@@ -243,7 +243,7 @@ def _figure(height: float, *parts: Callable[[Pen], None]) -> SymbolFigure:
 
 
 _REPEATED = (Symbol.SHACKLE, Symbol.SWIVEL, Symbol.LINK)
-"""Symbols drawn once for each item."""
+"""Symbols that are drawn several times for several equal items."""
 _FIGURES = {
     Symbol.SPHERE: _figure(36.0,
         _circle(0.0, 0.0, 17.0, fill=_FLOAT), _path("M-17 0Q0 7 17 0", **_BARE, stroke_width=0.9)),

@@ -1,7 +1,7 @@
 """Drawings of a solved line in a terminal: side view, plan, tension, and current by depth.
 
-A drawing consists of braille dots, and is a list with one text per row. Scales need at least 20 by
-6 cells.
+A drawing is a list of texts, one for each terminal row. Lines are drawn with braille dots. A
+drawing with scales needs at least 20 by 6 cells.
 """
 
 from collections.abc import Iterable, Sequence
@@ -34,14 +34,18 @@ from calm.physics.line import Floats, Water
 from calm.quantities import bearing_of, bearing_text, say
 
 _LEAST_SPAN = 0.1
-"""Minimum horizontal range relative to the height, so that a vertical line looks vertical."""
+"""Minimum horizontal range, as a fraction of the height of the picture.
+
+With a smaller range, a vertical line would not look vertical.
+"""
 
 _NAMED_FROM = 50
 _SHARE_OF_NAMES = 0.36
 _LONGEST_NAME = 22
 _FARTHEST = 1.5
-"""Maximum distance between a name and its part [rows]; names without a place within this distance
-are omitted.
+"""Maximum distance of a name from its part [rows].
+
+A name that cannot be placed within this distance is omitted.
 """
 
 _NEED = ("float", "release", "anchor", "instrument")
@@ -122,7 +126,7 @@ def _span(side: LinePicture) -> tuple[float, float]:
 
 
 def _placed_names(side: LinePicture, rows: int, room: int) -> list[tuple[int, str]]:
-    """Choose rows for names; names are omitted until each name is close to its part."""
+    """Choose a row for each name, and omit names until all other names are close to their parts."""
     height = (side.bottom - side.top) / rows
     found = sorted(line_picture.names(list(side.marks), height), key=lambda each: each[1].depth)
     while True:
@@ -142,7 +146,8 @@ def _placed_names(side: LinePicture, rows: int, room: int) -> list[tuple[int, st
 def _least_needed(found: list[tuple[str, PictureMark]], wanted: list[float], crowded: int) -> int:
     """Return the index of the name to omit among crowded names.
 
-    Instruments come first and, among equal roles, the name closest to the middle.
+    Names of instruments are omitted first. Among names of equal role, the name closest to the
+    middle is omitted.
     """
     around = [i for i, row in enumerate(wanted) if abs(row - wanted[crowded]) <= 2.0 * _FARTHEST]
     middle = sum(around) / len(around)
@@ -177,14 +182,14 @@ STROKES = {
 _HIGHEST_LOAD = 2.5
 """Maximum allowable load that is drawn, relative to the maximum tension."""
 _KILO = 1e4
-"""Tension from which labels use kilonewtons [N]."""
+"""Tension at which the labels change from newtons to kilonewtons [N]."""
 
 
 def tension(result: LegResult, width: int, height: int) -> list[Text]:
     """Draw the tension against the distance along the line from its top.
 
-    A red dotted line shows the working load, or the breaking load divided by the required safety
-    factor. Loads far above the tension are omitted.
+    A red dotted line shows the allowable load. This is the working load, or the breaking load
+    divided by the required safety factor. Allowable loads far above the tension are not drawn.
     """
     pulls, along = result.shape.tension, along_the_line(result.shape)
     if result.towed:  # pieces are listed from the ship down, while the shape begins at the body

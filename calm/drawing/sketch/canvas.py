@@ -148,9 +148,10 @@ class PlotFrame:
         self.canvas.line((self.point(x, y) for x, y in points), style, dash, gap)
 
     def mark(self, x: float, y: float, sign: str, style: str) -> None:
-        """Draw a mark in the cell of a point, or in an adjacent cell if this cell has another mark.
+        """Draw a mark in the cell of a point.
 
-        If the cell already has an equal mark, nothing is drawn.
+        If the cell has a different mark, a free cell next to it is used. If the cell already has
+        the same mark, nothing is drawn.
         """
         column, row = self.cell(x, y)
         for shift in (0, 1, -1, 2):
@@ -179,8 +180,8 @@ class PlotFrame:
     def scale_across(self, values: Iterable[float], *units: str) -> None:
         """Write numbers along the last row of the canvas, and ticks on the row above.
 
-        `units` are alternative texts for the unit; the first that fits is written. For the last,
-        numbers may be omitted.
+        `units` are alternative names of the unit. The first name that fits after the numbers is
+        written. If no name fits, the last of `units` is written in place of the last numbers.
         """
         row, edge = self.canvas.height - 1, self.canvas.width
         labels: list[tuple[int, str]] = []
