@@ -59,7 +59,9 @@ class WaveKeys(Model):
         "swell in the same direction", {"significant_height": "2 m", "peak_period": "14 s"}
     )
     scatter: Text | None = optional(
-        "CSV: significant_wave_height[m],peak_period[s],share; fatigue needs it", "seas.csv"
+        "CSV file with the columns significant_wave_height[m],peak_period[s],share; required for "
+        "the fatigue life",
+        "seas.csv",
     )
 
     @model_validator(mode="after")
