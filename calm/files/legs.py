@@ -331,7 +331,7 @@ def _check_held(legs: Sequence[FileLeg], section: SourceMapping) -> None:
         before = leg.name if anchor is None else stand.setdefault(anchor.at, leg.name)
         if anchor is not None and before != leg.name and "at" not in anchor.model_fields_set:
             message = (
-                f"the anchor is at the same position as that of leg `{before}`; set another "
+                f"the anchor is at the position of the anchor of leg `{before}`; set another "
                 "position: `bottom: {anchor: {at: [30 m, 0 m]}}`"
             )
             section.refuse((leg.name,), message, key=True)

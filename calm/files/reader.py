@@ -85,7 +85,7 @@ class MooringKeys(Model):
         {"current": "10 %", "cable_drag": ["-15 %", "30 %"]},
     )
     releases: tuple[ReleaseKeys, ...] | None = optional(
-        "the codes of each release by its serial number",
+        "the codes of each release, with its serial number",
         [{"serial": 1729, "codes": {"enable": "0A51", "release": "0A55"}}],
     )
     deployed: Deployed | None = optional(

@@ -120,7 +120,7 @@ class Rigid(definition.Definition):
     )
     k_surface: definition.Drag = optional("drag of a float at the surface at 1 m/s", "40 N/(m/s)^2")
     wind_area: Annotated[float | None, _AREA] = optional(
-        "area in the wind, with mast and sensors", "1.4 m^2"
+        "area exposed to the wind, with mast and sensors", "1.4 m^2"
     )
     wind_cd: definition.Coefficient = optional("drag coefficient of `wind_area`", 1.0)
 

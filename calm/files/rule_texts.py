@@ -203,7 +203,7 @@ RULES = {
         "then",
         _WAVES),
     "fatigue": RuleText("Fatigue in waves", "life",
-        "life of every piece below the float in the sea states of `waves: scatter:`",
+        "fatigue life of every piece below the float in the sea states of `waves: scatter:`",
         "The life must be at least `fatigue_factor` (3) times `service_time` (365 days). It is "
         "not judged without a table of sea states, and unknown without a published fatigue curve",
         "Dirlik 1985 and Miner's sum give the damage, with curves of DNV-OS-E301 (chain, "

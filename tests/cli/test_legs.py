@@ -944,7 +944,7 @@ def test_two_anchors_in_one_place_are_a_mistake(tmp_path: Path) -> None:
     pieces = "[{use: glass-17in}, {use: wire-jacketed-8, length: 10 m}, {use: anchor-wheels-4}]"
     more = f"  other:\n    line: {pieces}\n"
     with pytest.raises(
-        InputError, match="the anchor is at the same position as that of leg `stem`"
+        InputError, match="the anchor is at the position of the anchor of leg `stem`"
     ):
         load(tmp_path / "net.yaml", text=NET + more)
 

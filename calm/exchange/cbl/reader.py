@@ -179,7 +179,9 @@ def _water_of(problem: CableProblem, dropped: list[model.Remark]) -> model.Impor
     water.density = environment.number("rho", "density") or None
     water.gravity = environment.number("gravity", default=_USUAL_GRAVITY)
     if "gravity" not in environment:
-        water.guesses["gravity"] = "the file has no gravity; this is the usual value in WHOI Cable"
+        water.guesses["gravity"] = (
+            "the file gives no gravity; this is the usual value in WHOI Cable"
+        )
     grid = None
     if (value := environment.get("current-file")) is not None:
         grid = _gridded_current(value, problem, dropped)
