@@ -31,7 +31,7 @@ class SwellKeys(Model):
         "Hs of the swell", "2 m"
     )
     peak_period: Annotated[float, QuantityField("time", above=0)] = described(
-        "Tp of the swell, longer than that of the sea", "14 s"
+        "Tp of the swell, longer than the Tp of the wind sea", "14 s"
     )
 
 

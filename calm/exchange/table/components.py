@@ -86,7 +86,7 @@ def _check_lift(row: ListRow, kind: str, across: float, length: float) -> None:
             "column `total`"
         )
     else:
-        row.guesses["buoyancy"] = f"as in the list, although the piece {kilograms}"
+        row.guesses["buoyancy"] = f"value of the list, although the piece {kilograms}"
 
 
 def _shape(row: ListRow) -> tuple[str, float]:
