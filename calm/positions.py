@@ -49,7 +49,9 @@ def degrees_of(text: str, what: str) -> float | None:
         raise ValueError("has a sign and a hemisphere; remove one of them")
     parts = [found[name] for name in ("degrees", "minutes", "seconds") if found[name]]
     if any("." in part for part in parts[:-1]):
-        raise ValueError("has a fraction before its last part; write 57 28.84 N or 57 28 50.4 N")
+        raise ValueError(
+            "has a decimal fraction before its last number; write 57 28.84 N or 57 28 50.4 N"
+        )
     if any(float(part) >= 60.0 for part in parts[1:]):
         raise ValueError("has minutes or seconds of 60 or more")
     size = sum(float(part) / 60.0**power for power, part in enumerate(parts))

@@ -301,7 +301,7 @@ def unit_line(text: str, wanted: str) -> tuple[float, float]:
     try:
         ends = [float(registry.Quantity(x, plain).to(wanted).magnitude) for x in (0.0, 1.0)]
     except Exception:  # pint raises many types for bad units
-        raise QuantityError(f"is not {wanted}, or a unit of that kind") from None
+        raise QuantityError(f"cannot be converted to {wanted}") from None
     return ends[1] - ends[0], ends[0]
 
 

@@ -43,7 +43,7 @@ def readable(path: Path) -> Iterator[None]:
     except Exception as error:
         reason = str(error).partition("\n")[0] or type(error).__name__
         raise UsageError(
-            f"{path} cannot be read: {reason}; run the command that wrote it again"
+            f"{path} cannot be read: {reason}; repeat the command that created this file"
         ) from None
 
 

@@ -113,8 +113,8 @@ def _write(folder: Path, path: Path, deck: Deck, page_size: PageSize) -> None:
         narrate(f"{path}: {note}")
     if isinstance(deck.plan, DropPlan) and deck.plan.start is None:
         narrate(
-            f"{path}: the start of the ship's run to the target is not computed; set `deck_time` "
-            "(handling time per piece, by role) in the `document` section of the file"
+            f"{path}: the starting point of the ship's run to the target is not computed; set "
+            "`deck_time` (handling time per piece, by role) in the `document` section of the file"
         )
     write_report(folder, _contents(deck, page_size, notes))
     narrate(f"Deck sheets written to {folder}")

@@ -88,7 +88,9 @@ def _list_pages(words: str, texts: dict[str, Path], built: dict[str, Path]) -> N
     found.sort()
     most = -found[0][0]
     lines = [line for has, *_, line in found if has == -most]
-    contain = "contain it" if most == len(wanted) else f"contain {most} of its {len(wanted)} words"
+    contain = (
+        "contain it" if most == len(wanted) else f"contain {most} of these {len(wanted)} words"
+    )
     narrate(
         f"no page is called `{words}`; these pages {contain} (`calm docs NAME` prints the path of "
         "a page):"

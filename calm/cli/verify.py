@@ -106,10 +106,10 @@ def verify_field(outputs: Outputs) -> ExitCode:
     inside = float(np.mean([one.coverage for one in held]))
     good = ratio <= MEAN_RATIO and worst <= MAX_RATIO and IN_BAND[0] <= inside <= IN_BAND[1]
     verdict = (
-        "The rms error divided by that of interpolation "
-        f"is {ratio:.2f} on average (limit {MEAN_RATIO}) and {worst:.2f} at worst (limit "
-        f"{MAX_RATIO}). The 95 % bands contain {100.0 * inside:.0f} % of the depths (required: "
-        f"{100.0 * IN_BAND[0]:.0f} to {100.0 * IN_BAND[1]:.0f} %)."
+        f"The rms error is {ratio:.2f} times the rms error of interpolation on average (limit "
+        f"{MEAN_RATIO}) and {worst:.2f} times at worst (limit {MAX_RATIO}). The 95 % "
+        f"bands contain {100.0 * inside:.0f} % of the depths (required: {100.0 * IN_BAND[0]:.0f} "
+        f"to {100.0 * IN_BAND[1]:.0f} %)."
     )
     factors = study.intervals(task)
     document: dict[str, Any] = {

@@ -207,7 +207,7 @@ def of_net(
     for one in variables:
         text = str(one.attributes.get("long_name", "")).replace("of the anchor,", "of the origin,")
         found.append(replace(one, attributes={**one.attributes, "long_name": text}))
-    meaning = "name of the leg, whose parts are in order from its upper end"
+    meaning = "name of the leg; the parts of a leg are in order from its upper end"
     found.append(labels("leg_label", "leg", names, meaning))
     for part, legs in (("component", components), ("clamp", clamps), ("node", nodes)):
         index_attributes = {

@@ -35,11 +35,12 @@ def secure_anchors(design: model.ImportedDesign, output: Path) -> None:
         anchor.figures.pop("mass", None)
         anchor.guesses.pop("mass", None)
         reason = (
-            "the file has no anchor weight; `calm check` requires this weight in the file's current"
+            "the file gives no anchor weight; `calm check` requires this weight in the current of "
+            "the file"
         )
         anchor.figures["weight"] = rounded(max(required, _LEAST), _DIGITS, up=True)
         if pull is None:
-            reason = "the file has no anchor weight; this weight is large enough for any line"
+            reason = "the file gives no anchor weight; this value is large enough for any line"
             anchor.figures["weight"] = _HOLDS
         elif given is not None:
             reason = (

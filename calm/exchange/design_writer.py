@@ -45,7 +45,9 @@ class _Page:
 def mooring_text(design: model.ImportedDesign, source: str) -> tuple[str, list[model.Remark]]:
     """Write a design as the text of a mooring file; also return the guesses in this file."""
     page, of = _Page(), f"{one_line(source)}, a design of {design.program}"
-    page.remark(f"Imported from {of}, by CALM {__version__}, with the values of that file.")
+    page.remark(
+        f"CALM {__version__} imported this design from {of}. The values are from that file."
+    )
     for note in design.notes:
         page.remark(one_line(note))
     if design.dropped:

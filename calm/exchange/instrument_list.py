@@ -102,8 +102,8 @@ def read_instrument_list(path: Path, seabed: float) -> list[ListedInstrument]:
     found = [one for one in found if one.serial or (one.nominal == one.nominal and _says_more(one))]
     if not found:
         message = (
-            "lists no instrument with a serial number, or with a nominal depth and a name or a "
-            "clock offset"
+            "lists no usable instrument; each needs a serial number, or a nominal depth with a "
+            "name or clock offset"
         )
         raise refused(path, message)
     if len(found) > MOST_PIECES:

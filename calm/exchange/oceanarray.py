@@ -329,7 +329,7 @@ def _lay_line(
         if lower is not None and items:
             gap = lower - nominal[-1]
             if gap > _CLOSE and not roped:
-                between = f"between {below} and `{entry.label}`, {gap:.6g} m above it"
+                between = f"in the gap of {gap:.6g} m between {below} and `{entry.label}`"
                 if (rope := parts.find_rope(entry, between)) is not None:
                     piece = model.ImportedPiece(
                         rope[0], gap, guess="the length follows from the heights in the file"

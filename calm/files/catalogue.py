@@ -43,7 +43,7 @@ class Assembly(Definition):
 
     kind: Literal["assembly"] = Field(description="kind of the component")
     parts: tuple[dict[str, Any], ...] = described(
-        "pieces as in `line`, from the top",
+        "pieces from the top down, in the form of `line`",
         [{"use": "glass-17in", "count": 2}, {"use": "chain-13", "length": "1 m"}],
     )
 

@@ -106,7 +106,9 @@ class Checks(definition.Model):
         default_factory=MinimumTensions,
     )
     backup_margin: Annotated[float, _SHARE, Limit(_URI)] = definition.described(
-        "minimum buoyancy left after any break, as a share of the weight lifted", 0.1, default=0.1
+        "minimum net buoyancy after a break of the line, as a share of the weight that it lifts",
+        0.1,
+        default=0.1,
     )
     minimum_rise_speed: Annotated[float, _SPEED, Limit()] = definition.described(
         "minimum speed of the ascent after release", "0.3 m/s", default=0.3
@@ -149,12 +151,12 @@ class Checks(definition.Model):
         "minimum depth of the top of a subsurface line, even at low water", "10 m"
     )
     planned_depth_warning: Annotated[float, definition.LENGTH, Limit()] = definition.described(
-        "difference from the planned depth that causes a warning; 2 % of that depth if larger",
+        "difference from the planned depth that causes a warning; at least 2 % of planned depth",
         "10 m",
         default=10.0,
     )
     planned_depth_limit: Annotated[float, _SHARE, Limit()] = definition.described(
-        "difference from the planned depth that causes a failure, as a share of that depth",
+        "difference from the planned depth that causes a failure, as a share of planned depth",
         "10 %",
         default=0.1,
     )
@@ -278,7 +280,9 @@ class AcceptKeys(definition.Model):
     @model_validator(mode="after")
     def _ends_after_it_begins(self) -> AcceptKeys:
         if self.date is not None and self.until is not None and self.until < self.date:
-            raise ValueError(f"the `accept` ends on {self.until}, before its `date`, {self.date}")
+            raise ValueError(
+                f"this `accept` entry ends on {self.until}, before its `date`, {self.date}"
+            )
         return self
 
 

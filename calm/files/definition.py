@@ -219,9 +219,9 @@ class EstimatedFigure(Model):
         "lower bound in waves, if it is less than `low`", "8 kN"
     )
     quality: Literal["high", "medium", "low"] | None = optional(
-        "how well the source applies to this item: high if its manufacturer published the values; "
-        "medium for an owner's list, or for use at that depth; low for a similar item, or for a "
-        "derived value",
+        "how well the source applies to this item. high: the manufacturer published the values; "
+        "medium: an owner's list, or proven use at the depth; low: a similar item, or a computed "
+        "value",
         "low",
     )
     source: Text = described("source of the figures", "the chain above it")
@@ -272,12 +272,14 @@ class FatigueKeys(Model):
         "api-stud-chain", "api-connecting-link", "api-stranded-wire", "api-spiral-strand",
         "sots-shackle", "sots-peened-shackle", "sots-link", "sots-wire",
     ] | None = described(
-        "curve of DNV-OS-E301, API RP 2SK or SOTS, if not the default for the kind",
+        "fatigue curve of DNV-OS-E301, API RP 2SK or SOTS; by default the curve for the kind and "
+        "material of the part",
         "dnv-stud-chain",
         default=None,
     )  # fmt: skip
     corrosion: Annotated[float, QuantityField("length", at_least=0)] = described(
-        "loss of diameter by the end of the deployment, applied from the first day",
+        "loss of diameter by the end of the deployment; fatigue is computed with the reduced "
+        "diameter from the first day",
         "1 mm",
         default=0.0,
     )
@@ -298,12 +300,12 @@ class Definition(Model):
     manufacturer: Text | None = optional("manufacturer", "the manufacturer")
     part_number: Text | None = optional("part number of the manufacturer", "1250-A")
     material: Text | None = optional(
-        f"material, in words that contain one of {MATERIAL_NAMES}", "galvanised steel"
+        f"material: a text that contains one of {MATERIAL_NAMES}", "galvanised steel"
     )
     note: Text | None = optional("any remark", "galvanised; inspect after each cruise")
     source: Text | None = optional("source of the figures", "data sheet of the manufacturer, 2026")
     sources: dict[str, Text] | None = optional(
-        "sources of the values that are not from `source`, by key",
+        "sources of individual values, by key; all other values are from `source`",
         {"breaking_load": "test of 2025"},
     )
     searched: tuple[str, ...] | None = optional(
@@ -312,7 +314,7 @@ class Definition(Model):
     prefer: Text | None = optional("id of a better-documented entry for the same product", "sbe37")
     date: Text | None = optional("day, e.g. 2026-11-20", "2026-11-20")
     items: Annotated[int | None, Field(ge=1)] = optional(
-        "number of equal items in the component, each with its own serial number, such as two "
+        "number of identical items in the component, each with its own serial number, such as two "
         "releases in parallel",
         2,
     )
@@ -326,8 +328,8 @@ class Definition(Model):
         "force at which the clamp of the part slips along the line, e.g. 1 kN", "1 kN"
     )
     insulated: bool | None = optional(
-        "true if plastic or rubber, such as clamp jaws or bushes in the eyes, insulates the metal "
-        "from adjacent metals; by default true for clamps and false for pieces",
+        "true if the metal of the part is insulated from adjacent metals, e.g. by plastic clamp "
+        "jaws or rubber bushes in the eyes; by default true for clamps and false for pieces",
         True,
     )
     max_tilt: Annotated[float | None, TILT] = optional(
@@ -348,7 +350,7 @@ class Definition(Model):
         ],
     )
     fatigue: FatigueKeys | None = optional(
-        "fatigue curve in waves, if not the default for the kind",
+        "fatigue curve in waves; by default the curve for the kind and material of the part",
         {"curve": "dnv-stud-chain"},
     )
     slack: Literal["allowed"] | None = optional(

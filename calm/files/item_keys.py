@@ -30,16 +30,16 @@ class Equipment(definition.Model):
         "serial number; for several items (`count`) or a pair of releases, a list of numbers",
         12345,
     )
-    calibrated: Day | None = optional("day of its last calibration, e.g. 2026-03-01", "2026-03-01")
+    calibrated: Day | None = optional("day of the last calibration, e.g. 2026-03-01", "2026-03-01")
     sampling: Text | None = optional("sampling scheme as text, e.g. every 10 min", "every 10 min")
     battery_until: Day | None = optional(
-        "day on which its battery runs out, e.g. 2027-06-30", "2028-01-31"
+        "day on which the battery runs out, e.g. 2027-06-30", "2028-01-31"
     )
     termination: Text | None = optional(
         "end fittings of a cable, e.g. swaged sockets", "swaged sockets"
     )
     planned_depth: Annotated[float | None, definition.LENGTH] = optional(
-        "planned depth in still water; by default the depth in its label",
+        "planned depth in still water; by default the depth in the label",
         "200 m",
     )
 

@@ -23,15 +23,14 @@ from calm.units import QuantityError
 
 MOST_LEGS = 40
 ONE_LEG_ONLY = (
-    "this file is a net of legs, which only `calm run`, `check`, `batch`, `deck`, `size`, `diff` "
-    "and `export` accept; a single line with one free end and one anchor is needed here. Use `calm "
-    "batch` for the depths of a net's instruments in a record of currents; for waves or an anchor "
-    "drop, make a file of its most loaded leg alone"
+    "this file is a net of legs; a single line with one free end and one anchor is needed here. "
+    "Only `calm run`, `check`, `batch`, `deck`, `size`, `diff` and `export` accept nets. For the "
+    "depths of a net's instruments in a record of currents, use `calm batch`. For waves or an "
+    "anchor drop, make a file of the most loaded leg alone"
 )
 NET_SURE = (
-    "single lines; to see the effect of drag, buoyancy or current on a net, use `calm run "
-    "--explain`, or change the values in a copy of its file, or with `with_` in Python, and solve "
-    "the net again"
+    "single lines; for a net, `calm run --explain` shows the effect of drag, buoyancy or current; "
+    "or change values in a copy of the file (in Python: `with_`) and solve the net again"
 )
 
 _Offset = Annotated[float, QuantityField("length")]
@@ -120,11 +119,14 @@ class LegKeys(Model):
         [{"use": "wire-jacketed-8", "length": "150 m"}],
     )
     top: _End = Field(
-        default=FREE, description="connection of its upper end", examples=["free", {"join": "A"}]
+        default=FREE,
+        description="connection of the upper end of the leg",
+        examples=["free", {"join": "A"}],
     )
     bottom: _End | None = Field(
         default=None,
-        description="connection of its lower end; by default the anchor, if the last item is one",
+        description="connection of the lower end of the leg; by default its last item, if this is "
+        "an anchor",
         examples=[{"join": "A"}, {"anchor": {"at": ["30 m", "0 m"]}}, "free"],
     )
 
@@ -332,7 +334,7 @@ def _check_held(legs: Sequence[FileLeg], section: SourceMapping) -> None:
         before = leg.name if anchor is None else stand.setdefault(anchor.at, leg.name)
         if anchor is not None and before != leg.name and "at" not in anchor.model_fields_set:
             message = (
-                f"the anchor is at the same position as that of leg `{before}`; set another "
+                f"the anchor is at the position of the anchor of leg `{before}`; set another "
                 "position: `bottom: {anchor: {at: [30 m, 0 m]}}`"
             )
             section.refuse((leg.name,), message, key=True)

@@ -233,9 +233,7 @@ class LineReader:
 
     def _notice_unknown_mass(self, use: str, component: Component) -> None:
         if self._in_air and component.mass is None and component.displaced_volume is None:
-            notice = (
-                f"{use}: the mass is unknown; its net force in water is used as its weight in air"
-            )
+            notice = f"{use}: the mass is unknown; the net force in water is used as weight in air"
             self._notices += [notice] * (notice not in self._notices)
 
     def _clamps(self, item: SourceMapping, length: float | None) -> tuple[Clamp, ...]:

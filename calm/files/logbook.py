@@ -130,7 +130,7 @@ class ReleaseKeys(definition.Model):
 
     serial: Text | None = optional("serial number of the release", 1729)
     codes: Text | tuple[Text, ...] | dict[str, Text] | None = optional(
-        "one text, several, or several by name, e.g. {enable: 0123, release: 4567}",
+        "one code, a list of codes, or codes by name, e.g. {enable: 0123, release: 4567}",
         {"enable": "0A51", "release": "0A55"},
     )
 

@@ -59,7 +59,7 @@ class MooringKeys(Model):
         [{"use": "sphere-steel-1250"}, {"use": "anchor-wheels-4"}],
     )
     legs: dict[str, LegKeys] | None = optional(
-        "in place of `line`: several lines that join at nodes or are held",
+        "instead of `line`: several lines that join at nodes or end at fixed points",
         {"main": {"line": [{"use": "sphere-steel-1250"}], "bottom": {"join": "A"}}},
     )
     nodes: dict[str, dict[str, Any]] | None = optional("nodes at which legs join", {"A": {}})
@@ -85,7 +85,7 @@ class MooringKeys(Model):
         {"current": "10 %", "cable_drag": ["-15 %", "30 %"]},
     )
     releases: tuple[ReleaseKeys, ...] | None = optional(
-        "the codes of each release by its serial number",
+        "the codes of each release, with its serial number",
         [{"serial": 1729, "codes": {"enable": "0A51", "release": "0A55"}}],
     )
     deployed: Deployed | None = optional(

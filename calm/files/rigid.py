@@ -120,18 +120,18 @@ class Rigid(definition.Definition):
     )
     k_surface: definition.Drag = optional("drag of a float at the surface at 1 m/s", "40 N/(m/s)^2")
     wind_area: Annotated[float | None, _AREA] = optional(
-        "area in the wind, with mast and sensors", "1.4 m^2"
+        "area exposed to the wind, with mast and sensors", "1.4 m^2"
     )
     wind_cd: definition.Coefficient = optional("drag coefficient of `wind_area`", 1.0)
 
     heave: Literal["filtered", "follows", "panels"] | None = optional(
-        "method for the heave of a surface float in waves: `filtered` from its draft, waterplane "
-        "and mass; `panels` from panels on its hull; `follows` if it moves with the surface",
+        "method for the heave of a surface float in waves: `filtered` uses its draft, waterplane "
+        "and mass; `panels` uses panels on its hull; `follows` moves it with the water surface",
         "follows",
     )
     rao: Annotated[tuple[tuple[float, ...], ...] | None, PlainValidator(_read_rao)] = optional(
         "response of a float at each angular frequency in rad/s: heave per metre of wave elevation "
-        "and phase of the heave; optionally also pitch per metre and phase of the pitch",
+        "and phase of the heave; optionally, pitch per metre of wave elevation and its phase",
         {"0.5": [1.0, "0 deg"], "2": [0.6, "20 deg"]},
     )
     centre_of_mass: Annotated[float | None, _REACH] = optional(
@@ -324,10 +324,12 @@ class Profiler(Shaped):
         ["upper bumper", "lower bumper"],
     )
     minimum_tension: Annotated[float, definition.POSITIVE_FORCE] = described(
-        "minimum tension of its wire", "2224 N", default=LEAST_WIRE_TENSION
+        "minimum tension of the profiler's wire", "2224 N", default=LEAST_WIRE_TENSION
     )
-    drive_force: definition.PositiveForce = optional("maximum force of its drive", "50 N")
+    drive_force: definition.PositiveForce = optional(
+        "maximum force of the profiler's drive", "50 N"
+    )
     speed: Annotated[float | None, QuantityField("speed", above=0)] = optional(
-        "speed along its wire", "0.25 m/s"
+        "speed of the profiler along its wire", "0.25 m/s"
     )
-    endurance: definition.PositiveLength = optional("range of its batteries", "1000 km")
+    endurance: definition.PositiveLength = optional("range of the profiler's batteries", "1000 km")

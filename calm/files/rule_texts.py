@@ -41,20 +41,20 @@ RULES = {
         "",
         "A mooring without an equilibrium cannot be checked"),
     "current": RuleText("Current", "speed",
-        "the strongest current of all environments, and the range of levels in each profile",
-        "There is a warning if the current is below 0.2 m/s, below 0.9 times the strongest "
-        "current in the record used for an environment, or below 1/50 of the strongest current of "
-        "another environment. There is also a warning if the gap between the levels and the "
-        "surface, or between the levels and the seabed, exceeds both 25 m and a tenth of the "
-        "depth",
+        "the strongest current of all environments, and the depth range of each current profile",
+        "There is a warning if the strongest current is below 0.2 m/s, or below 0.9 times the "
+        "strongest current of a record from which a profile was taken. There is a warning for an "
+        "environment with a current below 1/50 of the strongest current. There is also a warning "
+        "if a profile leaves a gap at the surface or at the seabed that exceeds both 25 m and a "
+        "tenth of the depth",
         "DNV-RP-C205: wind drives a surface current of 0.015 to 0.03 times its speed, up to 0.2 "
         "m/s at 7 m/s",
         "in a batch, the record supplies the currents"),
     "drag-coefficient": RuleText("Drag coefficient", "",
-        "drag of spheres and cylinders in a flow whose Reynolds number is above 2e5, or beyond "
-        "the curve of `drag: reynolds`",
-        "There is a warning if the curve of a smooth shape makes the knockdown, or the offset of "
-        "a surface mooring, more than 5 % greater. Otherwise the effect is reported, but not "
+        "drag coefficients of spheres and cylinders at Reynolds numbers above 2e5 or, with "
+        "`drag: reynolds`, beyond the end of the drag curve",
+        "There is a warning if the drag curve of a smooth shape increases the knockdown, or the "
+        "offset of a surface mooring, by more than 5 %. Otherwise the effect is reported, but not "
         "judged",
         "Constant coefficients are valid up to 2e5; above this number the drag of smooth shapes "
         "falls",
@@ -63,18 +63,18 @@ RULES = {
         "possible but unusual values of an environment: directions that look like radians; a "
         "current opposite to the currents at the levels above and below; a current that increases "
         "down to the seabed, or is stronger than any current measured in deep water; a density not "
-        "found in any sea; a tidal range of more than 20 m; wind of more than 75 m/s; at some "
-        "levels, a storm current of less than half the ordinary current; no `wind` although a "
-        "surface float has a `wind_area`; fresh or brackish water in which the buoyancy of a float "
-        "without `mass` and `volume` is too high",
+        "found in any sea; a tidal range of more than 20 m; wind of more than 75 m/s; a "
+        "storm current that is less than half the ordinary current at some levels; no `wind` "
+        "although a surface float has a `wind_area`; fresh or brackish water in which the buoyancy "
+        "of a float without `mass` and `volume` is too high",
         "There is a warning for each of these",
         "CALM's own limits, from ranges found at sea and common typing errors",
         "`calm check` compares the environments with each other"),
     "missing": RuleText("Missing values", "",
-        "values that rules need but a component lacks; for each component id and value, one "
-        "finding lists the rules and the pieces concerned",
+        "values that rules need but a component lacks; there is one finding for each missing "
+        "value of a component",
         "The result is unknown",
-        "The finding lists the rules that need the value",
+        "The finding lists the rules that need the value, and the pieces concerned",
         _ONCE),
     "strength": RuleText("Strength", "load",
         "maximum tension of every piece; the top piece and the anchor are checked only if they "
@@ -99,8 +99,9 @@ RULES = {
         "The manufacturer of the clamp gives these loads",
         "the result does not contain the current at each clamp", figures=("grip",)),
     "profiler": RuleText("Profiler on its wire", "load",
-        "tension of the wire, obstacles on the wire, and the force that the profiler needs to "
-        "travel, at both stops and at the largest inclination of the wire",
+        "wire tension, obstacles on the wire, and the force that the profiler needs to travel; "
+        "these are checked with the profiler at both stops and at the largest inclination of the "
+        "wire",
         "The tension must be at least `minimum_tension` (2224 N), the force must not exceed "
         "`drive_force`, and no clamp may be between the stops. There is a warning if the diameter "
         "of the wire is not between 6.35 and 9.53 mm, or if a profile takes more than 6.4 h",
@@ -109,9 +110,9 @@ RULES = {
         figures=("drive_force",)),
     "strength-steps": RuleText("Strength steps", "load",
         "strength of every piece, compared with the cables above and below it",
-        "There is a warning if the allowable load of the piece is less than half that of the "
-        "weaker cable, and the piece carries more than half of its allowable load. Estimated "
-        "loads are ignored",
+        "There is a warning if the allowable load of the piece is less than half the allowable "
+        "load of the weaker cable, and the tension in the piece is more than half of the piece's "
+        "allowable load. Estimated loads are ignored",
         "CALM's own limit: a piece should have at least half the strength of the adjacent cables",
         "the strengths of adjacent pieces do not change with the current"),
     "tilt": RuleText("Tilt", "tilt",
@@ -121,7 +122,7 @@ RULES = {
         "The manufacturer gives the limit: RCM 27° (BODC), single-point Doppler 30°, ADCP 15 to "
         "20°, release 45°, sediment trap 10°", figures=("max_tilt",)),
     "depth-rating": RuleText("Depth rating", "depth",
-        "depth of every part in the current; for a surface float, only if its rating is specified",
+        "depth of every part in the current; a surface float is checked only if it has a rating",
         "The depth must not exceed `depth_rating` minus `rating_margin` (100 m, but at most half "
         "of the rating)",
         "The manufacturer gives the rating; the margin allows for a stronger current than "
@@ -141,12 +142,12 @@ RULES = {
         "CALM's own limit. A large difference suggests an error in a length or in the water depth",
         _ONCE),
     "stretch": RuleText("Stretch", "length",
-        "stretch of synthetic ropes without `stiffness` or `elongation`, and the load under which "
-        "a rope with `length_at` is measured",
-        "The result is unknown if the rope may, according to published stiffnesses, stretch by "
-        "more than 2 % of the water depth. There is a warning if the rope is measured under more "
-        "than its working load or, if this is unknown, under more than a fifth of its breaking "
-        "load",
+        "stretch of synthetic ropes without `stiffness` or `elongation`; load under which a rope "
+        "with `length_at` is measured",
+        "The result is unknown if the rope may stretch by more than 2 % of the water depth; the "
+        "stretch is estimated from published stiffnesses. There is a warning if the rope is "
+        "measured under more than its working load. If the working load is unknown, the limit is "
+        "a fifth of the breaking load",
         "CALM's own limit: soundings have a similar error, and ropes are measured under a small "
         "load",
         "`calm check` checks this in each environment"),
@@ -181,8 +182,8 @@ RULES = {
         "Dewey's rule, horizontal part: H ≤ friction (weight in water / 1.5 - V), with a friction "
         "coefficient of 0.6 for a deadweight", figures=("weight", "density")),
     "slack": RuleText("Minimum tension", "load",
-        "minimum tension of each wire and rope above the release, except on the seabed; not "
-        "checked by default if the line above the release is at most 50 m long",
+        "minimum tension of each wire and rope above the release; line on the seabed is exempt; "
+        "the default limits do not apply if the line above the release is at most 50 m long",
         "The tension must be at least `minimum_tension`: 500 N for wire, 300 N for rope. A piece "
         "with `slack: allowed` is exempt",
         "Mooring groups keep a tension of 50 to 100 kgf above the release; no limit is published, "
@@ -202,7 +203,7 @@ RULES = {
         "then",
         _WAVES),
     "fatigue": RuleText("Fatigue in waves", "life",
-        "life of every piece below the float in the sea states of `waves: scatter:`",
+        "fatigue life of every piece below the float in the sea states of `waves: scatter:`",
         "The life must be at least `fatigue_factor` (3) times `service_time` (365 days). It is "
         "not judged without a table of sea states, and unknown without a published fatigue curve",
         "Dirlik 1985 and Miner's sum give the damage, with curves of DNV-OS-E301 (chain, "
@@ -231,10 +232,10 @@ RULES = {
         "CALM reports the scope without a limit",
         "the scope is only reported, and has no limit"),
     "as-deployed": RuleText("As deployed", "depth",
-        "change in the top depth of the upright line from the design to the water depth and "
-        "lengths in `deployed`",
-        "There is a warning if the change exceeds the error of a sounding, √((1 m)² + (2.3 % of "
-        "the depth)²)",
+        "top depth of the upright line with the water depth and lengths in `deployed`, compared "
+        "with the top depth in the design",
+        "There is a warning if the difference exceeds the error of a sounding, √((1 m)² + (2.3 % "
+        "of the depth)²)",
         "IHO S-44, order 2, gives the maximum error of a sounding, at the 95 % level",
         _ONCE),
     "figures": RuleText("Component values", "",
@@ -242,18 +243,19 @@ RULES = {
         "mass, density, stiffness, strength, depth rating, drag coefficients",
         "Such a value is a failure. There is only a warning if `warn_tilt` exceeds `max_tilt`, if "
         "an instrument, release or connector floats, or if the `wind_area` is unusual for the "
-        "displacement of the float. The result is unknown if "
-        "the line replaces a value by a more favourable value without a `source`, or if a "
-        "`material` is unknown or contradicts the `name`",
+        "displacement of the float. The result is unknown if the line overrides a value with a "
+        "more favourable value but gives no `source`, or if a `material` is unknown or "
+        "contradicts the `name`",
         "The limits are those of `calm catalog check`",
         _ONCE),
     "release-present": RuleText("Release", "",
         "whether a piece of a subsurface line has `role: release`, and whether it frees the line",
-        "The result is unknown if there is no such piece, if the release is clamped, or if its "
-        "name is that of a shackle, swivel, rope or the like. There is a failure if no buoyancy is "
-        "above the release. There is a warning if a single release is used in more than 100 m of "
-        "water (a name or label with a word such as dual, twin or pair counts as two releases), if "
-        "the release is less than 1 m above the anchor, or if a float is below the release",
+        "The result is unknown if no piece has this role, if the release is clamped, or if it has "
+        "the name of a shackle, swivel, rope or similar part. There is a failure if no buoyancy is "
+        "above the release. There is a warning if the release is less than 1 m above the anchor, "
+        "or if a float is below the release. There is also a warning for a single release in more "
+        "than 100 m of water. A name or label with a word such as dual, twin or pair counts as two "
+        "releases",
         "CALM's own rule: a line that will be recovered needs a release",
         _ONCE),
     "hardware": RuleText("Hardware", "",
@@ -263,7 +265,7 @@ RULES = {
         _ONCE),
     "joints": RuleText("Joints", "",
         "whether there is a piece with `role: connector` wherever pieces of different kinds (wire, "
-        "chain, rigid) meet; ropes, which are spliced, and wires with a `termination` are exempt",
+        "chain, rigid) meet; wires with a `termination` and spliced ropes need no connector",
         "There is one warning for all joints of the line, and no warning for a line without any "
         "hardware",
         "CALM's own rule: a shackle that is not listed is neither bought nor checked",
@@ -277,8 +279,8 @@ RULES = {
         "rows with the same label, except connectors and anchors; items of one component with the "
         "same serial number; release codes without a release in the line; releases with the same "
         "codes; batteries that run out before the deployment or the calibration; calibrations "
-        "after the deployment; a revision of the document that is not the last one in its "
-        "`history`; repeated revisions and revisions that are not in the order of their dates",
+        "after the deployment; a `revision` of the document that differs from the last revision "
+        "in `history`; revisions that occur twice; revisions that are not in order of date",
         "There is a warning for each of these",
         "CALM's own rule: the deck sheets and the labels must agree",
         _ONCE),
@@ -290,19 +292,19 @@ RULES = {
         "CALM's own rule: if a wire twists under load, it kinks when the load comes off",
         _ONCE),
     "metals": RuleText("Dissimilar metals", "potential",
-        "adjacent pieces, and clamps with `insulated: false` on their pieces, if both have a "
-        "metal as `material` and neither is `insulated`",
+        "contacts of metals (by `material`) between adjacent pieces, or between a piece and its "
+        "clamp, if neither part is `insulated`; clamps are insulated by default",
         "There is a warning if the potential difference in sea water is above 0.2 V",
         "Professional Boatbuilder 100, 2006, gives the galvanic series in sea water; Pantaenius "
         "gives a limit of 0.15 to 0.2 V in harsh surroundings",
         _ONCE, has_ratio=False),
     "backup": RuleText("Back-up buoyancy", "load",
-        "net buoyancy of the section with the release, after the worst break of the line or loss "
-        "of a float (see below)",
+        "net buoyancy of the section with the release, after the worst possible break of the line "
+        "or loss of a float",
         "The net buoyancy must be at least `backup_margin` (0.1) times the weight lifted, and at "
         "least the drag at `minimum_rise_speed`. There is a warning for a surface mooring without "
-        "floats below its buoy. A single float that lifts the whole line and is at most 50 m "
-        "above the release is not judged; this is CALM's own rule",
+        "floats below its buoy. A line that is lifted by a single float at most 50 m above "
+        "the release is not judged; this is CALM's own rule",
         "URI GSO mooring program: if any one link breaks, everything above the release still "
         "floats; CALM itself sets the margin",
         _ONCE),
@@ -328,8 +330,8 @@ RULES = {
         "m/s floats breach and the line may loop",
         _ONCE),
     "tangling": RuleText("Tangling", "",
-        "parts that overtake the parts ahead of them during the descent or the ascent, and form "
-        "loops of 2 m or more",
+        "parts that overtake the parts ahead of them during the descent or the ascent, so that the "
+        "line forms loops of 2 m or more",
         "There is a warning",
         "CALM's own rule: parts that overtake others may tangle with them",
         _ONCE),

@@ -47,15 +47,16 @@ class BourgetMarichalKeys(Model):
         "the law", "bourget-marichal", default="bourget-marichal"
     )
     a1: Annotated[float, _NUMBER] = described(
-        "amplitude of the vibration divided by the cable diameter, for φ = 0",
+        "vibration amplitude / cable diameter = a1 + b1 φ + c1 φ², with the angle φ between cable "
+        "and flow; a1 is the value for φ = 0",
         0.45,
         default=BourgetMarichal.a1,
     )
     b1: Annotated[float, _NUMBER] = described(
-        "coefficient of φ, per degree", 0.01, default=BourgetMarichal.b1
+        "coefficient of φ (see `a1`), per degree", 0.01, default=BourgetMarichal.b1
     )
     c1: Annotated[float, _NUMBER] = described(
-        "coefficient of φ², per square degree", 0.0, default=BourgetMarichal.c1
+        "coefficient of φ² (see `a1`), per square degree", 0.0, default=BourgetMarichal.c1
     )
     c0: Annotated[float, _RESTING_CN] = described(
         "Cn of the cable at rest", 1.2, default=BourgetMarichal.rest

@@ -15,7 +15,7 @@ values.
 """
 _SHARE = QuantityField("number", at_least=0.0)
 _TOO_WIDE = (
-    "above 25 %, the maximum standard deviation; give the 5 and 95 % points as a pair instead"
+    "more than the maximum standard deviation of 25 %; set a pair of 5 and 95 % points instead"
 )
 
 

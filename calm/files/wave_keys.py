@@ -31,7 +31,7 @@ class SwellKeys(Model):
         "Hs of the swell", "2 m"
     )
     peak_period: Annotated[float, QuantityField("time", above=0)] = described(
-        "Tp of the swell, longer than that of the sea", "14 s"
+        "Tp of the swell, longer than the Tp of the wind sea", "14 s"
     )
 
 
@@ -59,7 +59,9 @@ class WaveKeys(Model):
         "swell in the same direction", {"significant_height": "2 m", "peak_period": "14 s"}
     )
     scatter: Text | None = optional(
-        "CSV: significant_wave_height[m],peak_period[s],share; fatigue needs it", "seas.csv"
+        "CSV file with the columns significant_wave_height[m],peak_period[s],share; required for "
+        "the fatigue life",
+        "seas.csv",
     )
 
     @model_validator(mode="after")

@@ -441,7 +441,10 @@ def _plan_deviation(
         )
     doubt = f"the position is {distance / 1000.0:.1f} km from the planned position"
     if away(*map(read_as_minutes, there)) <= NEAR * distance:
-        doubt += ", but near the plan if positions such as 48.18 mean 48 degrees 18 minutes"
+        doubt += (
+            "; it would be near the planned position if 48.18, for example, means 48 degrees 18 "
+            "minutes"
+        )
     sentences.append(
         "the result is far from the planned position; do the ranges belong to this mooring?"
     )

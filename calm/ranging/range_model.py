@@ -229,7 +229,7 @@ class RangeModel:
         away = float(fit.x[-1]) - 1.0
         if abs(away) <= max(student.ppf(1.0 - 0.5 * BY_CHANCE, freedom) * deviation, 1e-3):
             return []
-        text = f"The ranges fit better when all are {abs(100.0 * away):.1f} % "
+        text = f"The fit improves if all ranges are made {abs(100.0 * away):.1f} % "
         text += "longer" if away > 0.0 else "shorter"
         if self.survey.timed:
             text += f": is the speed of sound {(1.0 + away) * self.mean_speed(x):.0f} m/s?"

@@ -287,7 +287,7 @@ def _complaint(name: str, text: str, factor: float, depths: list[float]) -> str:
 
 def sound_complaint() -> str:
     """Return the message for an implausible speed of sound."""
-    return f"is not a speed of sound in water; it is {SLOWEST:g} to {FASTEST:g} m/s"
+    return f"is not a speed of sound in water, which is {SLOWEST:g} to {FASTEST:g} m/s"
 
 
 _OTHER_NAMES: Mapping[str, str] = {

@@ -176,9 +176,7 @@ class CurrentDataset:
         if self._levels is not None:
             variable = self._levels.variable
             if not (self._terms.on_the_line or np.isfinite(depth).any()):
-                raise cf_files.UnreadableError(
-                    f"the depths of its levels, `{variable.name}`, have no value"
-                )
+                raise cf_files.UnreadableError(f"all level depths in `{variable.name}` are missing")
             description = description_of(variable.attrs)
             summaries["depth"] = VariableSummary.of(str(variable.name), "m", depth, description)
         removed = {}

@@ -65,7 +65,7 @@ def too_deep(depth: float) -> str | None:
     """Return a message if a depth [m] exceeds `DEEPEST`, else None."""
     if not depth > DEEPEST:
         return None
-    return f"depth {depth:g} m is deeper than any sea, {DEEPEST:g} m"
+    return f"depth {depth:g} m exceeds the greatest depth of any sea, {DEEPEST:g} m"
 
 
 ZONES_OF_UTC = ("UTC", "GMT", "Z", "ZULU", "UTC+0", "UTC+00:00", "+00:00", "ETC/UTC")
@@ -128,7 +128,9 @@ def choose_time(times: NDArray[np.datetime64], wanted: str | None) -> tuple[int,
         raise TimeChoiceError(f"{time_text(moment)} is outside the record, {span}")
     index = int(np.abs(times - moment).argmin())
     if np.count_nonzero(times == times[index]) > 1:
-        raise TimeChoiceError(f"the file has two profiles of {time_text(times[index])}; remove one")
+        raise TimeChoiceError(
+            f"two profiles in the file have the time {time_text(times[index])}; remove one of them"
+        )
     if times[index] == moment:
         return index, None
     used = f"the current at {time_text(times[index])} is used"

@@ -113,9 +113,9 @@ def choose_column(
     chosen = np.unravel_index(np.nanargmin(np.where(wet, distance, np.inf)), distance.shape)
     place = float(lat[chosen]), _signed(float(lon[chosen]))
     index = {dim: int(box[dim][i]) for dim, i in zip(horizontal, chosen, strict=True)}
-    dry = "" if chosen == nearest else " that has a current"
+    dry = "" if chosen == nearest else " with a current"
     note = (
-        f"the column nearest to {written(wanted)}{dry} is at {written(place)}, "
+        f"for {written(wanted)}, the nearest water column{dry} is at {written(place)}, "
         f"{distance[chosen]:.1f} km away"
     )
     return GridColumn(index, place, (note,))
@@ -386,7 +386,9 @@ def _nodes(grid: SeabedGrid) -> tuple[Floats, Floats, Floats]:
         here = here.transpose(lat, lon)
         here = here[tuple(slice(None, None, -(-size // _MOST) or 1) for size in here.shape)]
         if min(here.shape) < 2:
-            raise cf_files.UnreadableError("has too few nodes around the position of the mooring")
+            raise cf_files.UnreadableError(
+                "has too few grid points near the position of the mooring"
+            )
         north, east = (np.asarray(here[each].values, float) for each in (lat, lon))
         attributes = dataset[name].attrs
         down = attributes.get("positive", "up" if name in _UP else "down") == "down"

@@ -217,7 +217,7 @@ def read_time_columns(path: Path, dimensions: Sequence[str], example: str) -> Ti
     table = delimited.read_table(path, f"time,{example}")
     header = table.header
     if not is_time(header.cells[0]):
-        message = f"is not a table over time; its heading should be `time,{example}`"
+        message = f"is not a table of a time series; its heading should be `time,{example}`"
         raise InputError([header.problem(message)])
     problems: list[Problem] = []
     if complaint := zone_complaint(header.cells[0]):

@@ -154,7 +154,7 @@ def read_series(
         for name, series in mine.items():
             if label and len(series) > len({one.below for one in series}):
                 raise UsageError(
-                    f"{path} holds {len(series)} instruments; `{label}=` needs a file with one"
+                    f"{path} holds {len(series)} instruments; `{label}=` needs a file with only one"
                 )
             found[name] += [replace(one, label=label or one.label) for one in series]
     if problems:

@@ -127,8 +127,8 @@ class _Levels:
         levels, name = self.variable, self.variable.name
         if _MODEL_COORDINATE.fullmatch(str(levels.attrs.get("standard_name", ""))):
             raise UnreadableError(
-                f"`{name}` is {levels.attrs['standard_name']}, a fraction of the water depth, "
-                "whatever its unit; give the depths of the levels, such as ROMS' `z_rho`"
+                f"`{name}` is {levels.attrs['standard_name']}, a fraction of the water depth and "
+                "not a depth; use the depths of the levels, such as ROMS' `z_rho`"
             )
         texts = words_of(levels, "standard_name", "long_name", "reference_datum")
         words = words_in(f"{name} {texts}")
@@ -185,7 +185,7 @@ class _Levels:
         offset = by_hand and "rdi" not in str(attributes.get("inst_make", "")).lower()
         offset = offset and str(name).startswith("range")
         if offset and orientation == "down":
-            note = f"`{name}` is measured from the surface, because its offset is already added"
+            note = f"`{name}` is measured from the surface, as it includes the instrument's depth"
             return LevelDepths(self.variable, factor, 0.0, None, (note,))
         zero, what = instrument, "the instrument"
         if offset and instrument is None:

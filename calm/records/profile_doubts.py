@@ -87,8 +87,8 @@ def _reversed_levels(depth: Floats, speed: Floats, toward: Floats) -> Iterator[s
         if min(across) > _OPPOSITE and _between(toward[i - 1], toward[i + 1]) < _SAME_DIRECTION:
             yield (
                 f"the current at {say('depth', float(depth[i]))} is opposite to the currents "
-                "above and below it, although its speed is between their speeds: is the "
-                "direction or a sign wrong?"
+                "above and below, although its speed lies between the speeds of these two: is "
+                "the direction or a sign wrong?"
             )
 
 

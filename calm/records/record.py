@@ -140,7 +140,7 @@ def choose_profiles(
         No profile is in the period, or `every` is not positive.
     """
     if every < 1:
-        raise UsageError(f"one profile in {every} is not possible; the number must be at least 1")
+        raise UsageError(f"`every` is {every}; it must be at least 1")
     if not len(times):
         raise refused(path, "has no times")
     notes = []
@@ -151,8 +151,8 @@ def choose_profiles(
         times = times[order]
     again = np.flatnonzero(times[1:] == times[:-1])
     if len(again):
-        more = f", and {len(again) - 1} more times" if len(again) > 1 else ""
-        message = f"has two profiles of {time_text(times[again[0]])}{more}; remove one of them"
+        more = f", and at {len(again) - 1} more times" if len(again) > 1 else ""
+        message = f"has two profiles at {time_text(times[again[0]])}{more}; remove the duplicates"
         raise refused(path, message)
     start, stop = period or (None, None)
     first = 0 if start is None else int(np.searchsorted(times, start, "left"))

@@ -457,13 +457,11 @@ def _unchanged(values: Floats, times: Times, names: Sequence[str]) -> Iterator[s
                 longest = most, int(edges[::2][runs.argmax()]), k
     if stuck:
         most, first, k = longest
-        which = (
-            f"{stuck} of {same.shape[1]} levels keep" if same.shape[1] > 1 else "the record keeps"
-        )
+        which = f"{stuck} of {same.shape[1]} levels do" if same.shape[1] > 1 else "the record does"
         yield (
-            f"{which} one value for a tenth of the record, or from most readings to the next: the "
-            f"longest run{names[k]} has {most} readings, from {time_text(times[first])} to "
-            f"{time_text(times[first + most - 1])}"
+            f"{which} not change for a tenth of the record, or between most readings: the longest "
+            f"run of equal values{names[k]} has {most} readings, from {time_text(times[first])} "
+            f"to {time_text(times[first + most - 1])}"
         )
 
 

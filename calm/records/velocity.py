@@ -131,8 +131,8 @@ def find_velocity(dataset: xr.Dataset, *, regular: bool) -> Velocity:
     direction, sense = _direction(dataset, regular, notes)
     if speed is None or direction is None:
         raise UnreadableError(
-            "holds no current: CALM searches for eastward and northward velocity, or speed and "
-            "direction to or from, by CF standard name, then by usual name"
+            "holds no current: CALM searches for an eastward and a northward velocity, or for a "
+            "speed and a direction, first by CF standard name, then by usual name"
         )
     if sense is None:
         raise UnreadableError(
@@ -185,8 +185,8 @@ def _find_variable(
     if regular and _ALONG_THE_GRID.get(own) is sought:
         sense = "east" if sought is _EAST else "north"
         notes.append(
-            f"`{name}`, with the standard name {own}, is used as {sense}ward, because the grid "
-            "runs along latitudes"
+            f"`{name}`, with the standard name {own}, is used as {sense}ward velocity, because "
+            "the grid is regular in latitude and longitude"
         )
     elif own and own not in sought.standard and not _is_magnetic_variant(own, sought):
         raise UnreadableError(
@@ -236,8 +236,8 @@ def refuse_ragged(dataset: xr.Dataset, name: str) -> None:
             many = len({*variable.to_numpy().reshape(-1).tolist()})
         if many > 1:
             raise UnreadableError(
-                f"`{name}` has {many} instruments one after the other (`{index}` gives the "
-                "instrument of each reading): give one file for each instrument"
+                f"`{name}` contains the readings of {many} instruments in sequence (`{index}` "
+                "gives the instrument of each reading); use one file for each instrument"
             )
 
 

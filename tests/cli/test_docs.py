@@ -79,7 +79,7 @@ def test_a_word_lists_the_pages_that_contain_it_those_with_it_in_a_heading_first
     assert calm("docs", "swivel more").out == of_chains
     several = calm("docs", "swivel", "more", "nowhere")
     assert several.out == of_chains
-    assert "contain 2 of its 3 words" in several.err
+    assert "contain 2 of these 3 words" in several.err
 
 
 def test_a_long_line_is_shown_around_the_word(calm, manual):

@@ -355,9 +355,7 @@ def test_bad_inputs_are_refused(calm, depths, folder):
     err = refused(calm, "depths.nc", "other.nc")
     assert "no instrument matches a part of the line" in err and "did you mean `upper`?" in err
     write_values("unit.nc", depths, unit="dbar")
-    assert "its unit, `dbar`, is not degC, or a unit of that kind" in refused(
-        calm, "depths.nc", "unit.nc"
-    )
+    assert "its unit, `dbar`, cannot be converted to degC" in refused(calm, "depths.nc", "unit.nc")
     write_values("none.nc", depths, unit="")
     assert "has no unit; set one, such as degC" in refused(calm, "depths.nc", "none.nc")
     (folder / "empty.nc").write_bytes(b"")

@@ -209,7 +209,7 @@ def test_the_label_of_a_part_is_enough(assigned):
 
 @pytest.mark.parametrize(("text", "said"), [
     ("name,colour\nMicroCAT,red\n", "no column for serial numbers or nominal depths"),
-    ("time,depth[m],u[m/s]\n2026-03-01,115,0.3\n", "lists no instrument with a serial number"),
+    ("time,depth[m],u[m/s]\n2026-03-01,115,0.3\n", "lists no usable instrument"),
     ("name,serial,depth[m]\nMicroCAT,3222,deep\n", "`deep`"),
     ("name,serial,depth[kg]\nMicroCAT,3222,12\n", "kg"),
     ("name,serial,depth[m]\nMicroCAT,3222,168.4\n", "could be `upper` or `middle`"),

@@ -162,7 +162,7 @@ def test_other_commands_say_which_one_solves_nets(
     assert run(command, net, *more.get(command, [])) == 2
     told = capsys.readouterr().err
     assert f"{net}: this file is a net of legs" in told
-    assert "only `calm run`, `check`, `batch`, `deck`, `size`, `diff` and `export`" in told
+    assert "Only `calm run`, `check`, `batch`, `deck`, `size`, `diff` and `export`" in told
 
 
 def test_a_net_goes_to_moordyn_and_back(
@@ -907,7 +907,7 @@ legs:
 
 BROKEN_GRIDS = [
     (GRIDDED[GRIDDED.index("environment") :], "a grid needs the `position`"),
-    (GRIDDED.replace("longitude: -5", "longitude: 5"), "too few nodes around the position"),
+    (GRIDDED.replace("longitude: -5", "longitude: 5"), "too few grid points near the position"),
     (
         GRIDDED.replace("[30 m, 0 m]", "[3 km, 0 m]"),
         "the grid of the seabed has no depth at the anchor",
@@ -944,7 +944,7 @@ def test_two_anchors_in_one_place_are_a_mistake(tmp_path: Path) -> None:
     pieces = "[{use: glass-17in}, {use: wire-jacketed-8, length: 10 m}, {use: anchor-wheels-4}]"
     more = f"  other:\n    line: {pieces}\n"
     with pytest.raises(
-        InputError, match="the anchor is at the same position as that of leg `stem`"
+        InputError, match="the anchor is at the position of the anchor of leg `stem`"
     ):
         load(tmp_path / "net.yaml", text=NET + more)
 

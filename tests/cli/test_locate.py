@@ -233,7 +233,9 @@ def test_degrees_and_minutes_written_as_decimals_are_named(calm, ranges, write_m
     (folder / "m.yaml").write_text(position + text)
     done = calm("locate", ranges(), "--update", "m.yaml")
     assert done.code == 1
-    assert "near the plan if positions such as 48.18 mean 48 degrees 18 minutes" in done.err
+    assert (
+        "near the planned position if 48.18, for example, means 48 degrees 18 minutes" in done.err
+    )
 
 
 def test_horizontal_distances_are_refused(calm, ranges):

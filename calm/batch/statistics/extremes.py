@@ -138,8 +138,8 @@ def _reason_if_censored(statuses: Mapping[str, int]) -> str:
             ended[ending_of(status)] += count
     outcomes = " and ".join(f"{count} {ending.value}" for ending, count in ended.items() if count)
     return outcomes and (
-        f"the profiles with a current include {outcomes}; these may contain the largest values, "
-        "and levels from the other profiles would be too low"
+        f"some profiles with a current were not solved ({outcomes}); the largest values may occur "
+        "in these profiles, so levels from the solved profiles would be too low"
     )
 
 
@@ -161,8 +161,9 @@ def _by_maxima(
     if len(maxima) < LEAST_MAXIMA:
         return LevelsRefused(
             "gev",
-            f"annual maxima of {LEAST_MAXIMA} whole years are needed; years in the record with at "
-            f"least {100 * WHOLE:.0f} % of their profiles: {len(maxima)} of {count}",
+            f"annual maxima of {LEAST_MAXIMA} whole years are needed; a whole year has at least "
+            f"{100 * WHOLE:.0f} % of its profiles; whole years in the record: {len(maxima)} of "
+            f"{count}",
         )
     if maxima.max() == maxima.min():
         return LevelsRefused("gev", f"the {len(maxima)} annual maxima are all equal")
@@ -205,9 +206,9 @@ def _over(
     tail, rate = tails.fit_excesses(peaks, threshold), len(peaks) / years
     rules = (
         f"{len(peaks)} peaks, one from each cluster of values above the {percentile:.0f} % "
-        f"quantile; of the quantiles from {THRESHOLDS[-1]:.0f} % to {THRESHOLDS[0]:.0f} %, this is "
-        f"the highest that gives at least {LEAST_PEAKS} clusters; the clusters are found from the "
-        f"intervals between exceedances (Ferro and Segers 2003){gaps}"
+        f"quantile; this is the highest quantile from {THRESHOLDS[-1]:.0f} % to "
+        f"{THRESHOLDS[0]:.0f} % that gives at least {LEAST_PEAKS} clusters; the intervals between "
+        f"exceedances define the clusters (Ferro and Segers 2003){gaps}"
     )
     growths = {period: log(rate * period) for period in _periods(years) if rate * period > 1.0}
     return _fit_with_levels("pot", tail, rate, rules, growths)
@@ -237,8 +238,8 @@ def _fit_with_levels(
         f"; {100 * CONFIDENCE:.0f} % intervals by profile likelihood"
         if sure
         else (
-            "; no intervals, because the likelihood theory is valid only for shapes above "
-            f"{LEAST_SHAPE}, and the shape is {tail.shape:.2f}"
+            "; no intervals, because the likelihood theory requires a shape parameter above "
+            f"{LEAST_SHAPE}; the fitted shape parameter is {tail.shape:.2f}"
         )
     )
     levels = tuple(

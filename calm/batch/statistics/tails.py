@@ -140,8 +140,8 @@ def _shape_inside_range(shape: float) -> float:
     for bound in SHAPES:
         if abs(shape - bound) <= _AT_BOUND:
             raise NotFitted(
-                f"the fitted shape is {shape:.2f}, at a limit of the search; a shape outside the "
-                "search range may fit better"
+                f"the fitted shape parameter is {shape:.2f}, at a limit of the search range; a "
+                "shape parameter outside this range may fit better"
             )
     return float(shape)
 

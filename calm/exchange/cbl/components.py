@@ -71,9 +71,9 @@ class ComponentMaker:
             and _TOO_WIDE * (mass - weight / self.gravity) < CATALOGUE_DENSITY * area
         ):
             component.guesses["diameter"] = (
-                "as in the file, although one metre of this diameter displaces "
-                f"{CATALOGUE_DENSITY * area:.3g} kg of water; the mass of {mass:.3g} kg and the "
-                f"weight in water of {weight:.3g} N imply only "
+                "value of the file, which contradicts mass and weight: one metre of this diameter "
+                f"displaces {CATALOGUE_DENSITY * area:.3g} kg of water, but a mass of {mass:.3g} "
+                f"kg and a weight in water of {weight:.3g} N mean that one metre displaces only "
                 f"{mass - weight / self.gravity:.3g} kg"
             )
         self._stretch(component, definition, area - bore)
@@ -139,7 +139,7 @@ class ComponentMaker:
             figures["friction"] = mu
         component = ImportedComponent(name, "anchor", figures)
         if "mass" in figures and "weight" not in figures:
-            component.guesses["mass"] = "the file has no weight in water; steel is assumed"
+            component.guesses["mass"] = "the file gives no weight in water; steel is assumed"
         return component
 
     def buoy(self, definition: CableDefinition, *, afloat: bool) -> ImportedComponent:

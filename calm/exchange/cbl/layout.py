@@ -241,7 +241,9 @@ class CableLayout:
         if not segments or (low and high):
             where = start if isinstance(end, str) else end
             assert not isinstance(where, str)
-            raise where.token.refuse("this line has no segment, or both of its ends are lower ends")
+            raise where.token.refuse(
+                "this line has no segment, or both of its ends are anchors or sinking buoys"
+            )
         if high:  # the layout lists this leg downwards
             items = [_reversed_piece(each) for each in items[::-1]]
             first, lower, last, upper = last, upper, first, lower
@@ -256,7 +258,9 @@ class CableLayout:
             return [], model.joined_at(at), False
         values, token = at.values, at.token
         if "node" in values:
-            raise token.refuse("the layout has a loop: this end of the line is attached to a node")
+            raise token.refuse(
+                "the layout has a loop, because this end of the line is attached to a node"
+            )
         x, y, z = (values.number(key) for key in ("x", "y", "z"))
         if "anchor" not in values:
             buoy = self._buoy(at, afloat=self.problem.kind == "surface")

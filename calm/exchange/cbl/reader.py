@@ -160,7 +160,7 @@ def _refuse_unsupported_problems(problem: CableProblem) -> None:
     anchored = ["anchor" in end.values for end in ends]
     if any("node" in end.values for end in ends):
         raise ends[1].token.refuse(
-            "the layout has a loop: this end of the line is attached to a node"
+            "the layout has a loop, because this end of the line is attached to a node"
         )
     if kind != "towing" and not any(anchored):
         raise ends[0].token.refuse("neither end is an anchor, so the line drifts")
@@ -179,7 +179,9 @@ def _water_of(problem: CableProblem, dropped: list[model.Remark]) -> model.Impor
     water.density = environment.number("rho", "density") or None
     water.gravity = environment.number("gravity", default=_USUAL_GRAVITY)
     if "gravity" not in environment:
-        water.guesses["gravity"] = "the file has no gravity; this is the usual value in WHOI Cable"
+        water.guesses["gravity"] = (
+            "the file gives no gravity; this is the usual value in WHOI Cable"
+        )
     grid = None
     if (value := environment.get("current-file")) is not None:
         grid = _gridded_current(value, problem, dropped)
@@ -304,7 +306,7 @@ def _gridded_current(
     )
     here = _at_zero(_at_zero(_at_zero(speeds, time), y), x)
     if times > 1:
-        dropped.append(model.Remark("current-file", "currents at times after the first"))
+        dropped.append(model.Remark("current-file", "currents after the first time"))
     if np.ptp(speeds, axis=(1, 2)).any():
         what = "horizontal variation of the current; the profile at the anchor is used"
         dropped.append(model.Remark("current-file", what))

@@ -99,9 +99,7 @@ def write_cbl(exported: ExportedDesign) -> Exported:
             problem.add_point_load(clamp)
     floating = design.afloat
     if floating and not design.has_draft:
-        lost.append(
-            "the constant drag of the float: WHOI Cable computes the draft, and the drag from it"
-        )
+        lost.append("the constant drag of the float: WHOI Cable computes the drag from the draft")
     if design.tow is not None and design.tow.height:
         lost.append("the height of the sheave: in WHOI Cable the line begins at the surface")
     if floating:
@@ -141,7 +139,7 @@ def _along_the_heading(design: ExportedLine, lost: list[str]) -> ExportedLine:
         across = 0.0 if abs(across) < _CALM else across
         levels.append((depth, along, across, up, density))
     heading = degrees(atan2(design.tow.east, design.tow.north)) % 360.0
-    lost.append(f"the heading, {heading:.4g} deg true: in WHOI Cable x points ahead")
+    lost.append(f"the heading, {heading:.4g} deg true: the x axis of WHOI Cable points ahead")
     if any(level[2] for level in levels):
         lost.append("currents across the heading: the statics of WHOI Cable only use x and z")
     tow = replace(design.tow, east=speed, north=0.0)

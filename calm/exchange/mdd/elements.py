@@ -65,8 +65,8 @@ def rigid(element: MddElement) -> model.ImportedComponent:
         component.comment = "The file has no size for this piece, so it has no drag."
     elif _is_too_small(element):
         component.guesses["diameter"] = (
-            f"as in the file, but too small for a float that lifts {element.lift:g} kgf; its drag "
-            "is also too small"
+            f"value of the file, but too small for a float that lifts {element.lift:g} kgf; the "
+            "drag of this float is also too small"
         )
     return component
 
@@ -89,7 +89,8 @@ def rides_by_buoyancy(component: model.ImportedComponent) -> None:
     volume = (1.0 + _SLIGHT) * lift / (CATALOGUE_DENSITY * KILOGRAM_FORCE)
     component.hull = ((0.0, 0.0, 0.0), (height or _FLAT, volume, shown[component.kind]))
     component.comment = (
-        "At the surface, the draft and drag of this float are proportional to its used buoyancy."
+        "At the surface, the draft and drag of this float are proportional to the share of its "
+        "buoyancy in use."
     )
 
 
@@ -114,13 +115,13 @@ def _flexible(element: MddElement) -> model.ImportedComponent:
         component.figures["stiffness"] = modulus * math.pi / 4.0 * element.across**2
         if _HARD.search(element.name) and modulus < _SOFT:
             component.guesses["stiffness"] = (
-                f"from the modulus in the file, {modulus / 1e9:g} GPa, which is typical of "
-                "rope; was this modulus left over from another material?"
+                f"computed from the modulus in the file; {modulus / 1e9:g} GPa is typical of "
+                "rope: was this modulus left over from another material?"
             )
     if component.kind == "chain":
         component.comment = (
-            "The diameter is the width in the file, because Cd refers to that width. The bar "
-            "diameter is different."
+            "The diameter is the width in the file, because Cd refers to this width. The width "
+            "is not the bar diameter of the chain."
         )
     if element.width > 0.0 and element.diameter > 0.0:
         component.guesses["diameter"] = (

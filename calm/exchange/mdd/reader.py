@@ -125,14 +125,12 @@ def _attach_clamps(
     by_share = len(host) == len(share) == len(clamped)
     by_height = len(height) == len(clamped)
     if not by_share and not by_height:
-        counts = f"`Jobj` has {len(host)}, `Pobj` {len(share)} and `ZCO` {len(height)}"
-        message = (
-            f"the number of positions must equal the number of clamps, {len(clamped)}: {counts}"
-        )
+        counts = f"`Jobj` has {len(host)} values, `Pobj` {len(share)} and `ZCO` {len(height)}"
+        message = f"each of the {len(clamped)} clamps needs a position, but {counts}"
         raise refused(path, message)
     for i, element in enumerate(clamped):
         above = _position_by_height(design.items, height[i]) if by_height else None
-        place, guess = above, "the position follows from the height `ZCO` alone"
+        place, guess = above, "the position is computed from the height `ZCO` alone"
         if by_share:
             place, guess = _position_by_share(design, host[i], share[i]), ""
             if place is None:

@@ -65,8 +65,8 @@ def write_mdd(exported: ExportedDesign) -> Exported:
         lost.append("wind")
     if design.afloat:
         lost.append(
-            "the hull of the float: in Mooring Design & Dynamics, draft and drag are proportional "
-            "to the used buoyancy; the exported Cd gives the drag that CALM computes in this "
+            "the hull of the float: Mooring Design & Dynamics makes draft and drag proportional "
+            "to the buoyancy in use; the exported Cd gives the drag that CALM computes in this "
             "current"
         )
     losses = design.losses(lost)

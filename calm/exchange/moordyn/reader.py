@@ -254,7 +254,7 @@ def _upper_float(top: _Row) -> model.ImportedPiece:
     figures = _figures(top)
     if _lift(figures) <= 0.0:
         raise top.refuse("the upper end is free but not buoyant")
-    reason = "the file holds the upper end in place; in CALM it is a float that is free to move"
+    reason = "the upper end is fixed in the file; in CALM it is a float that is free to move"
     guess = {"volume": reason} if _is_held(top) else {}
     name = f"point {top.words['id']}"
     return model.ImportedPiece(

@@ -133,8 +133,8 @@ def write_moordyn(exported: ExportedDesign) -> Exported:
         lost.append("wind")
     if any(design.afloat for design in lines):
         lost.append(
-            "the hull of the float: the upper end is fixed, and its point has the mass, volume and "
-            "drag of the float at its present draft"
+            "the hull of the float: the upper end is a fixed point with the mass, volume and drag "
+            "of the float at its present draft"
         )
     else:
         lost.append(AS_A_POINT)

@@ -283,7 +283,8 @@ def decimal_sign(cells: Iterable[tuple[str, str]]) -> tuple[str, str]:
         sign, (first, digits) = next(iter(doubtful.items()))
         what = "points" if sign == "." else "commas"
         raise ValueError(
-            f"{first} may be {_either(digits)}; no other number shows how {what} are used"
+            f"{first} may be {_either(digits)}; no other number shows whether {what} mark "
+            "thousands or decimals"
         )
     decimal = next(iter(seen), ".")
     if decimal == ",":

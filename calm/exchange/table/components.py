@@ -35,7 +35,7 @@ def _anchor(row: ListRow) -> _Definition:
         kept["weight"] = abs(row.figure("buoyancy"))
     elif row.figure("mass"):
         kept["mass"] = row.figure("mass")
-        row.guesses["mass"] = "the list has no weight in water; steel is assumed"
+        row.guesses["mass"] = "the list gives no weight in water; steel is assumed"
     return "anchor", kept | {"length": row.figure("length")}
 
 
@@ -82,10 +82,11 @@ def _check_lift(row: ListRow, kind: str, across: float, length: float) -> None:
     )
     if row.count > 1 and lift <= row.count * most:
         row.refuse(
-            f"each piece {kilograms}; if the value is for all {row.count}, name the column `total`"
+            f"each piece {kilograms}; if the buoyancy is for all {row.count} pieces, name its "
+            "column `total`"
         )
     else:
-        row.guesses["buoyancy"] = f"as in the list, although the piece {kilograms}"
+        row.guesses["buoyancy"] = f"value of the list, although the piece {kilograms}"
 
 
 def _shape(row: ListRow) -> tuple[str, float]:

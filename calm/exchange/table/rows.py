@@ -136,7 +136,10 @@ def rows_of(
             guessed.append(model.Remark(row.where, "read as a rope, since it is long and thin"))
         several = _COUNTED.match(name)
         if several and row.count == 1 and not (row.is_line and not _LENGTHS.match(name)):
-            remark = f"read as one piece with the values of its row, not as {several[1]} pieces"
+            remark = (
+                "read as one piece with the values of this row, although the name counts "
+                f"{several[1]} pieces"
+            )
             guessed.append(model.Remark(row.where, remark))
         _divide_totals(row, known, guessed)
         rows.append(row)

@@ -13,7 +13,10 @@ _HEADER = (
 def write_list(exported: ExportedDesign) -> Exported:
     """Write a line as a list in CSV."""
     (design,) = exported.legs
-    lost = ["the water", "hulls and wind: floats at the surface are written with their full drag"]
+    lost = [
+        "the water",
+        "float hulls and wind: surface floats are written with the drag of immersed floats",
+    ]
     if design.tow is not None:
         lost.append("the speed of the ship, for which a list has no column")
     losses = design.losses(lost)

@@ -74,7 +74,7 @@ def test_the_nearest_column_with_water_is_taken(tmp_path: Path) -> None:
         depth, u, v, w = record.profiles(0, COUNT)
         assert (record.source["latitude"], record.source["longitude"]) == ("48.3", "-5.12")
         assert record.notes[0] == (
-            "the column nearest to 48.3° N 5.2° W that has a current is at 48.3° N 5.12° W, "
+            "for 48.3° N 5.2° W, the nearest water column with a current is at 48.3° N 5.12° W, "
             "5.9 km away"
         )
     column = glorys().isel(latitude=1, longitude=2)

@@ -119,7 +119,7 @@ def test_a_negative_speed_is_a_mistake(csv: Path) -> None:
         ("time\n", (1, 1, "`time` is not a header such as `time,depth[m],u[m/s],v[m/s]`")),
         (
             HEAD + "2026-03-01,0,1,1\n2026-03-02,0,1,1\n2026-03-01,5,1,1\n",
-            (0, 0, "has two profiles of 2026-03-01T00:00; remove one of them"),
+            (0, 0, "has two profiles at 2026-03-01T00:00; remove the duplicates"),
         ),
     ],
 )

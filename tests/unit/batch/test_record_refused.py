@@ -26,8 +26,8 @@ def refusal(dataset: xr.Dataset, folder: Path, at: tuple[float, float] | None = 
 def test_what_it_holds_is_listed(tmp_path: Path) -> None:
     dataset = adcp().drop_vars("v")
     assert refusal(dataset, tmp_path) == (
-        "holds no current: CALM searches for eastward and northward velocity, or speed and "
-        "direction to or from, by CF standard name, then by usual name; it holds "
+        "holds no current: CALM searches for an eastward and a northward velocity, or for a speed "
+        "and a direction, first by CF standard name, then by usual name; it holds "
         "u (time 7, bin 5) [mm s-1] eastward_sea_water_velocity; "
         "w (time 7, bin 5) [mm s-1] upward_sea_water_velocity; "
         "bin_depths (time 7, bin 5) [m]; time (time 7) [seconds since 2026-03-01] time; bin (bin 5)"
@@ -129,7 +129,7 @@ def with_attributes(dataset: xr.Dataset, name: str, **attributes: str) -> xr.Dat
         ),
         (
             lambda: adcp().assign_coords(time=adcp()["time"] // 2000),
-            "has two profiles of 2026-03-01T00:00, and 4 more times; remove one of them",
+            "has two profiles at 2026-03-01T00:00, and at 4 more times; remove the duplicates",
         ),
     ],
 )
@@ -152,8 +152,8 @@ def test_x_is_east_along_latitudes(tmp_path: Path) -> None:
     dataset.to_netcdf(path, engine="h5netcdf")
     with open_record(path, Terms(SEABED, place=HERE)) as record:
         note = (
-            "`uo`, with the standard name sea_water_x_velocity, is used as eastward, because the "
-            "grid runs along latitudes"
+            "`uo`, with the standard name sea_water_x_velocity, is used as eastward velocity, "
+            "because the grid is regular in latitude and longitude"
         )
         assert note in record.notes
 

@@ -103,7 +103,7 @@ def test_most_intervals_hold_the_true_level():
 
 
 def test_a_tail_whose_shape_is_at_a_bound_is_not_fitted():
-    with pytest.raises(NotFitted, match=r"the fitted shape is 2\.00"):
+    with pytest.raises(NotFitted, match=r"the fitted shape parameter is 2\.00"):
         fit_excesses(1.0 + np.geomspace(1e-9, 1e9, 60), 1.0)
     with pytest.raises(NotFitted, match="at a limit of the search"):
         fit_maxima(np.geomspace(1e-9, 1e9, 60))

@@ -224,7 +224,7 @@ def test_a_placeholder_size_is_kept_and_pointed_out(tmp_path):
     size = np.array(HEIGHT)
     size[:, 0] = (1.5, 0.01, 0.01, 2.0)
     made = imported(tmp_path, mooring(H=size))
-    assert "diameter: 10 mm  # guessed: as in the file, but too small" in made.text
+    assert "diameter: 10 mm  # guessed: value of the file, but too small" in made.text
     assert len(made.guessed) == 1
 
 
@@ -246,7 +246,7 @@ def test_clamps_sit_on_rigid_pieces_too(tmp_path):
 def test_a_clamp_known_by_its_height_alone_is_guessed(tmp_path):
     made = imported(tmp_path, mooring(Jobj=None, Pobj=None))
     assert [each.what for each in made.guessed] == [
-        "the position follows from the height `ZCO` alone"
+        "the position is computed from the height `ZCO` alone"
     ]
     assert "at: 24 m" in made.text
 

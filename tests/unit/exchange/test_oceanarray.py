@@ -141,7 +141,7 @@ def test_all_that_is_not_known_is_said_at_once(tmp_path):
     lines = [problem.line for problem in caught.value.problems]
     assert lines == sorted(lines)
     assert len(lines) == 5  # each name once
-    with pytest.raises(InputError, match="no line is listed between the anchor and `2 Releases`"):
+    with pytest.raises(InputError, match=r"no line is listed in the gap of .* and `2 Releases`"):
         imported(tmp_path, HEAD + LINE, {**STANDS_FOR, "rope": ""})
     with pytest.raises(UsageError, match="glass-17inch"):
         imported(tmp_path, HEAD + LINE, {**STANDS_FOR, "Float + beacon": "glass-17inch"})

@@ -584,7 +584,7 @@ def test_no_piece_is_lost_without_a_word(read, tmp_path):
     assert any("`TOTALS`, a sum" in each for each in dropped)
     assert any("row 7: `ditto` read as `17 in glass`" in each for each in guessed)
     assert made.text.count("kind: cable") == read(ENGLISH).text.count("kind: cable")
-    assert any("not as 3 pieces" in each for each in guessed)
+    assert any("the name counts 3 pieces" in each for each in guessed)
     german = read(ENGLISH.replace("Total,", "Summe,"))
     assert len(pieces(german, tmp_path)) == len(labels) - 4
 
@@ -649,7 +649,7 @@ def test_totals_are_divided_by_their_count(read, tmp_path):
 def test_a_weight_of_all_that_is_given_as_of_one_is_refused(read):
     with pytest.raises(
         InputError,
-        match=r"Glass ball: each piece .*cannot lift 300 kg.*if the value is for all 12",
+        match=r"Glass ball: each piece .*cannot lift 300 kg.*if the buoyancy is for all 12",
     ):
         read(SHORT.replace("-25", "-300"))
 
@@ -664,7 +664,7 @@ def test_a_count_times_a_length(read):
     with pytest.raises(InputError, match="`2 x 200 m` contains a count and a value"):
         read(SHORT.replace("1,100,8", "1,2 x 200 m,8"))
     made = read(SHORT.replace("Wire rope", "2 x 50 m wire rope"))
-    assert any("not as 2 pieces" in str(each) for each in made.guessed)
+    assert any("the name counts 2 pieces" in str(each) for each in made.guessed)
 
 
 def test_norwegian_tables_with_headings_and_parts(read, tmp_path):

@@ -415,8 +415,8 @@ ONE_MISTAKE = {
         (
             14,
             24,
-            "`current: 60 %` is above 25 %, the maximum standard deviation; give the 5 and 95 % "
-            "points as a pair instead",
+            "`current: 60 %` is more than the maximum standard deviation of 25 %; set a "
+            "pair of 5 and 95 % points instead",
         ),
     ),
     "deviation with a unit": (
@@ -433,8 +433,8 @@ ONE_MISTAKE = {
         (
             14,
             23,
-            "`length: 5` is a share of 500 %, above 25 %, the maximum standard deviation; give "
-            "the 5 and 95 % points as a pair instead; did you mean `length: 5 %`?",
+            "`length: 5` is a share of 500 %, more than the maximum standard deviation of 25 %; "
+            "set a pair of 5 and 95 % points instead; did you mean `length: 5 %`?",
         ),
     ),
     "deviation below nothing": (

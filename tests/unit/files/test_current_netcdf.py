@@ -137,7 +137,7 @@ def test_times_that_cannot_be_chosen(tmp_path: Path, time: str | None, message: 
 def test_a_time_that_occurs_twice_is_not_chosen(tmp_path: Path) -> None:
     twice = record().isel(time=[0, 1, 1])
     assert read(twice, tmp_path, "2026-03-01T00:00")[0].u == tuple(U)
-    with pytest.raises(TimeChoiceError, match="two profiles of 2026-03-01T06:00; remove one"):
+    with pytest.raises(TimeChoiceError, match="have the time 2026-03-01T06:00; remove one"):
         read(twice, tmp_path, "2026-03-01T05:00")
 
 
@@ -207,8 +207,8 @@ def test_currents_that_are_flagged_as_bad_are_left_out(tmp_path, flags, told, le
 def test_no_current_in_the_file(tmp_path: Path) -> None:
     dataset = xr.Dataset({"temperature": ("depth", U)}, {"depth": DEPTH})
     assert problem(dataset, tmp_path) == (
-        "holds no current: CALM searches for eastward and northward velocity, or speed and "
-        "direction to or from, by CF standard name, then by usual name; it holds "
+        "holds no current: CALM searches for an eastward and a northward velocity, or for a speed "
+        "and a direction, first by CF standard name, then by usual name; it holds "
         "temperature (depth 3); depth (depth 3) [m]"
     )
 
@@ -255,7 +255,9 @@ def test_column_of_a_place(tmp_path: Path) -> None:
     grid().to_netcdf(path, engine="h5netcdf")
     table, notices = read_current_file(path, None, Terms(220.0, (48.28, -5.31)))
     assert table.u == pytest.approx([1.1 * u for u in U])
-    assert notices == ["the column nearest to 48.28° N 5.31° W is at 48.3° N 5.3° W, 2.3 km away"]
+    assert notices == [
+        "for 48.28° N 5.31° W, the nearest water column is at 48.3° N 5.3° W, 2.3 km away"
+    ]
     assert problem(grid(), tmp_path).startswith(
         "the file has 4 water columns, 48.2° N 5.3° W to 48.3° N 5.2°"
     )

@@ -59,7 +59,10 @@ def test_headings_give_columns_units_and_the_way() -> None:
             "depth m,speed m/s,toward deg\n-5,1,4\n-9,1,4\n",
             "the depths are negative; depths must be po",
         ),
-        ("depth m,speed m/s,toward deg\n5,1,4\n12000,1,4\n", "depth 12000 m is deeper than any se"),
+        (
+            "depth m,speed m/s,toward deg\n5,1,4\n12000,1,4\n",
+            "depth 12000 m exceeds the greatest depth",
+        ),
         (
             "depth m,speed m/s,toward deg\n5,99.99,4\n",
             "99.99 m/s is faster than `max",

@@ -380,7 +380,10 @@ def test_fill_values_not_marked_as_such_are_named(tmp_path: Path, fill: float) -
 
 def test_depths_deeper_than_any_sea(tmp_path: Path) -> None:
     deep = currents().assign_coords(depth=("depth", [5.0, 50.0, 99999.0], DEPTH[2]))
-    assert refusal(deep, tmp_path) == "its depth 99999 m is deeper than any sea, 11000 m"
+    assert (
+        refusal(deep, tmp_path)
+        == "its depth 99999 m exceeds the greatest depth of any sea, 11000 m"
+    )
 
 
 def test_a_time_zone_is_not_guessed(tmp_path: Path) -> None:

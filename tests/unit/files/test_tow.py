@@ -325,8 +325,8 @@ def test_in_air_a_net_force_in_water_has_to_do_for_a_mass(read: Read) -> None:
     assert file.pieces[0].component.net_buoyancy == -0.7
     assert file.pieces[1].component.net_buoyancy == -500.0
     assert file.notices == (
-        "wire: the mass is unknown; its net force in water is used as its weight in air",
-        "bird: the mass is unknown; its net force in water is used as its weight in air",
+        "wire: the mass is unknown; the net force in water is used as weight in air",
+        "bird: the mass is unknown; the net force in water is used as weight in air",
     )
 
 

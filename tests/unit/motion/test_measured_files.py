@@ -105,7 +105,7 @@ def out_of_time():
 @pytest.mark.parametrize(("dataset", "said"), [
     (lambda: instrument("DEPTH", "depth", "m", comment=INFERRED), "is not a measurement"),
     (lambda: instrument("DEPTH", "depth", "m", long_name="depth estimated by CALM"), "by calm"),
-    (with_ids, "2 instruments one after the other (`sensor_id` gives the instrument"),
+    (with_ids, "the readings of 2 instruments in sequence (`sensor_id` gives the instrument"),
     (out_of_time, "contains the value -712224.4"),
     (lambda: instrument(units=""), "unit"),
     (lambda: instrument(units="degC"), "unit"),

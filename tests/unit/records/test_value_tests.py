@@ -128,7 +128,7 @@ def test_a_tenth_without_change(length, told):
     said = doubts(u, v)
     assert len(said) == told
     if told:
-        assert "1 of 3 levels keep one value for a tenth" in said[0]
+        assert "1 of 3 levels do not change for a tenth" in said[0]
         assert f"at 120 m has {length} readings, from 2026-03-01T10:00" in said[0]
 
 

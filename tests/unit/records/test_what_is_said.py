@@ -86,12 +86,12 @@ def poor(record: xr.Dataset) -> xr.Dataset:
 
 @pytest.mark.parametrize(("make", "expected"), [
     (every_day, "the 30 profiles are 24 h apart, so tides and peaks between them"),
-    (lambda one: one * 0 + one * 0, "10 of 10 levels keep one value for a tenth of the record"),
+    (lambda one: one * 0 + one * 0, "10 of 10 levels do not change for a tenth of the record"),
     (with_values("u", lambda one: one["u"].values[:1] + 0 * one["u"].values), None),
     (of_attribute("u", "valid_range", [-0.12, 0.12]), "values of `u` were excluded, because they"),
     (lambda one: one.assign_attrs(time_zone="CEST"), "`time_zone` is `CEST`, but CALM reads"),
     (of_attribute("u", "units", "kn"), "have different units, `kn` and `m s-1`"),
-    (lambda one: one.where(one["depth"] != 40.0, 0.1), "1 of 10 levels keep one value for a tent"),
+    (lambda one: one.where(one["depth"] != 40.0, 0.1), "1 of 10 levels do not change for a tenth"),
     (lambda one: one.where(one["time"] > 80, one.isel(time=0)), "at 4 m has 81 readings, from 202"),
     (lambda one: one.where(one["time"].values[:, None] % 2 > 0, 0.4 - one), "10 of 10 series app"),
     (copied, "100 readings from 2026-03-13T12:00 are the same as those from 2026-03-03T02:00"),
@@ -116,8 +116,9 @@ def test_records_that_stand_still_or_are_of_another_unit(record, tmp_path) -> No
     for name in ("u", "v"):
         still[name][:] = record[name].values[:1]
     assert said(still, tmp_path) == [
-        "10 of 10 levels keep one value for a tenth of the record, or from most readings to the "
-        "next: the longest run at 4 m has 720 readings, from 2026-03-01T00:00 to 2026-03-30T23:00"
+        "10 of 10 levels do not change for a tenth of the record, or between most readings: the "
+        "longest run of equal values at 4 m has 720 readings, from 2026-03-01T00:00 to "
+        "2026-03-30T23:00"
     ]
     for name in ("u", "v"):
         record[name].values[:] /= 100.0
@@ -279,7 +280,7 @@ def test_a_nominal_depth_that_fills_a_gap_is_none(tmp_path) -> None:
     rows = "\n".join(f"2026 3 {1 + i // 24} {i % 24}.0 {20 + i} {i}" for i in range(48))
     text = f"InstrDepth = -999\nColumns = YY:MM:DD:HH:U:V\n{rows}\n"
     (tmp_path / "m.use").write_text(text)
-    told = "the depths of its levels, `INSTRUMENT_DEPTH`, have no value"
+    told = "all level depths in `INSTRUMENT_DEPTH` are missing"
     assert told in refusal(tmp_path / "m.use")
     (tmp_path / "m.use").write_text(text.replace("-999", "120"))
     with open_record(tmp_path / "m.use", Terms(SEABED)) as read:
