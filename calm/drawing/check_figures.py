@@ -162,8 +162,10 @@ _HOLLOW = (*BALLS, Symbol.SPHERE, Symbol.FOAM, Symbol.STREAMLINED, Symbol.BUOY)
 _FIGURES, _GAP = 26.0, 6.0
 _LEAST_LABELS = 138.0
 """Minimum width for labels next to a wide mooring; shorter labels take only their own width."""
-_REAL = 0.78
-"""Actual width of a text, as a fraction of the upper bound from `text_width`."""
+_REAL = 0.82
+"""Assumed width of a text, as a fraction of the upper bound from `text_width`. In DejaVu Sans, the
+widest substitute font, the fraction is up to 0.88; the space before the depths suffices for this.
+"""
 _MOST_LEVELS = 7
 
 
