@@ -221,7 +221,7 @@ def test_columns_of_a_table_are_pressures_or_depths_each_in_its_unit(tmp_path):
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        (["x=two.nc"], "holds 2 sensors; `x=` needs a file with one"),
+        (["x=two.nc"], "holds 2 sensors; `x=` needs a file with one sensor"),
         (["a=one.nc", "two.nc"], "two sensors are called `a`"),
         (["wide.nc"], "must have a time and an instrument dimension"),
     ],
