@@ -248,7 +248,7 @@ def test_a_comment_that_merging_left_condemns_no_instrument_whose_flags_are_good
     invented.to_netcdf(tmp_path / "stack.nc", engine="h5netcdf")
     a, b = read_sensors([str(tmp_path / "stack.nc")], frozenset({1, 2}), -32.0, 300.0)
     assert (a.label, b.label, a.dropped, b.dropped) == ("a", "b", 1, 2)
-    assert "the flags of its values decide" in a.note and a.note == b.note
+    assert "values that have an accepted flag" in a.note and a.note == b.note
     invented.drop_vars("p_qc").to_netcdf(tmp_path / "bare.nc", engine="h5netcdf")
     with pytest.raises(InputError, match="is not a measurement"):
         read_sensors([str(tmp_path / "bare.nc")], frozenset({1, 2}), -32.0, 300.0)
