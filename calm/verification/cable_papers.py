@@ -280,10 +280,10 @@ computed without CALM.""",
         Case("strumming: C* at the ship", 3.0, "", 1e-9, "The upper limit of the model.",
              lambda: _coefficient(radians(_example(True).angle)),
              Kind.PUBLISHED),
-        Case("a/D at 90°", 0.5, "", 1e-4, _FITTED, lambda: _LAW.amplitude(pi / 2.0),
-             Kind.BY_CONSTRUCTION),
+        Case("strumming: amplitude a/D at 90°", 0.5, "", 1e-4, _FITTED,
+             lambda: _LAW.amplitude(pi / 2.0), Kind.BY_CONSTRUCTION),
         *(
-            Case(f"bare cable, {speed} m/s: a/D", expected, "", 0.05,
+            Case(f"bare cable, {speed} m/s: amplitude a/D", expected, "", 0.05,
                  "Half a unit of the last printed digit.",
                  partial(_amplitude, speed), Kind.PUBLISHED)
             for speed, expected in ((0.6, 0.9), (2.0, 1.4))

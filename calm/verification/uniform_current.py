@@ -222,7 +222,7 @@ evaluated without CALM. The march has an angle step of 0.1° in C8.""",
             [
                 CaseColumn[Wake]("tension at the ship", "N", 1e-6, lambda wake: wake.tension, True),
                 CaseColumn[Wake](_AT_THE_SHIP, "°", 1e-4, lambda wake: wake.angle),
-                CaseColumn[Wake]("body aft of the ship", "m", 3e-4, lambda wake: wake.aft),
+                CaseColumn[Wake]("distance aft of the ship", "m", 3e-4, lambda wake: wake.aft),
                 CaseColumn[Wake]("depth of the body", "m", 3e-4, lambda wake: wake.depth),
             ],
             _by_speed("C8 with a body", _with_body, (
