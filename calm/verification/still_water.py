@@ -334,8 +334,8 @@ terminal speeds of a vertical (*plumb*) line and of a heavy sphere. Each speed i
         Case("maximum tension below the float", 7432.0, "N", 0.03 * 7432.0, _INERTIA,
              lambda: _pull(1, 0), Kind.INDEPENDENT),
         Case("speed of a plumb line", _PLUMB, "m/s", 1e-4,
-             "After a fall of 2850 m, the line is straight. A stretch of 0.1 % reduces the speed by "
-             "3e-5 m/s.",
+             "After a fall of 2850 m, the line is straight. A stretch of 0.1 % reduces the speed "
+             "by 3e-5 m/s.",
              _plumb, Kind.CLOSED_FORM),
         Case("speed of a heavy sphere", _ALONE, "m/s", 0.01, _THREAD, _alone, Kind.CLOSED_FORM),
     ),
