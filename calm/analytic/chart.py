@@ -276,7 +276,7 @@ def contradiction(known: Mapping[str, float]) -> NoEquilibrium | None:
             "Set two of these and one other quantity.",
         )
     if above is not None and above <= (below or 0.0) + height:
-        least = "that at the other end" if below is not None else "w H" if height else "0"
+        least = "the tension at the other end" if below is not None else "w H" if height else "0"
         return _inconsistent(
             "The tension at the upper end (for a buoyant cable, at the lower end) must exceed "
             f"{least}.",
@@ -308,19 +308,15 @@ def reason(k: float, known: Mapping[str, float], floats: bool) -> NoEquilibrium:
     angle = f"the critical angle, {shown:.6g}° at K = {k:g}"
     start, end = known.get("phi_a"), known.get("phi_b")
     if known.get("tension_a") == 0.0:
-        message = f"A cable without tension at one end is straight, at {angle}."
-        return _none(
-            message, "Set a tension above 0, or quantities that such a straight cable can have."
-        )
+        message = f"A cable without tension at one end is straight; its angle is {angle}."
+        return _none(message, "Set a tension above 0, or quantities that fit a straight cable.")
     if is_taut(known):
         message = (
             "A cable no longer than the distance between its ends would need infinite tension."
         )
         return _none(message, "Lengthen the cable or bring its ends closer.")
     if end is not None and not 0.0 < end < math.pi:
-        message = (
-            "The cable must rise in the direction from A to B at the end with the larger tension."
-        )
+        message = "At the end with the larger tension, the cable must rise from A to B."
         return _none(message, "Set an angle between 0 and 180° at that end.")
     if start is not None and end is not None:
         lean = start + 2 * math.pi if start < critical - math.pi else start

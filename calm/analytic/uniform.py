@@ -122,8 +122,8 @@ def tension_ratio(
     m = branch.parameter(_checked(angle))
     if not np.all(np.isfinite(m)):
         raise ValueError(
-            f"all angles must be on the same side of the critical angle, "
-            f"{np.degrees(branch.critical_angle):.6g}°, as the start"
+            "all angles must be on the same side of the critical angle, "
+            f"{np.degrees(branch.critical_angle):.6g}°, as the first angle"
         )
     return np.exp(branch.log_tension(m) - branch.log_tension(branch.parameter(start)))
 

@@ -29,8 +29,8 @@ MOST_COUNT = 1000
 Parts = tuple[Piece | Clamp, ...]
 
 _ANCHOR_WEIGHT = (
-    "the required weight of an anchor follows from its load: `calm run` prints it for one "
-    "environment, and `calm check` for the worst of all situations"
+    "the required weight of an anchor follows from its load; `calm run` prints this weight for one "
+    "environment, and `calm check` prints the largest weight over all situations"
 )
 
 

@@ -149,8 +149,8 @@ def explain(result: Result, label: str | None = None) -> Explanation:
         shares = _shares(result, figures, "knockdown" in quantities, part.place)
     except NoEquilibrium as failure:
         notes.append(
-            "The share of each part's drag cannot be computed, because the line has no equilibrium "
-            f"if its drag is reduced ({failure.status}: {failure.message})"
+            "The effect of the drag of each part cannot be computed, because the line has no "
+            f"equilibrium with reduced drag ({failure.status}: {failure.message})"
         )
     else:
         causes = _causes(result, shares)

@@ -91,7 +91,7 @@ def _found(leg: Leg, clamp: Clamp, at: float) -> ProfilerPlace:
         other = Leg(file, leg.for_surface, leg.memory, given_water=leg.water)
         clamps = clamps_of(file.pieces[:-1], other.equilibrium())
     except NoEquilibrium as failure:
-        message = f"With {clamp.label} at {at:.0f} m down its wire: {failure.message}"
+        message = f"When {clamp.label} is {at:.0f} m down its wire: {failure.message}"
         raise NoEquilibrium(failure.status, message, failure.advice) from None
     row = clamps.label.index(clamp.label)
     return ProfilerPlace(

@@ -225,7 +225,7 @@ class ComponentRow:
 
     part: Piece = column("piece as defined in the file", of_part=lambda piece: piece, in_repr=False)
     index: int = column(
-        "number of the piece in the file, from 0",
+        "number of the piece in the file; the first piece has number 0",
         _OF_PIECES,
         title="no.",
         unit="",
@@ -401,7 +401,7 @@ class ClampRow:
 
     part: Clamp = column("clamp as defined in the file", of_part=lambda clamp: clamp, in_repr=False)
     index: int = column(
-        "number of the piece with the clamp, from 0",
+        "number of the piece that carries the clamp; the first piece has number 0",
         _OF_PIECES,
         title="no.",
         unit="",
@@ -740,7 +740,7 @@ class NodePlace:
     x: float = column("offset of the node to the east of the origin", _AN_END)
     y: float = column("offset of the node to the north of the origin", _AN_END)
     imbalance: float = column(
-        "resultant force that remains at the node",
+        "magnitude of the sum of all forces at the node; 0 in exact equilibrium",
         Output.JSON,
         title="imbalance",
         unit="N",

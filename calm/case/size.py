@@ -154,9 +154,9 @@ def size(
     before = at(adjustment.now)
     if wanted.relation == "=" and before.measured is None:
         raise UsageError(
-            f"{wanted.text}: a search for an equal value starts from the present value, and the "
-            f"mooring has none{f' ({before.failure})' if before.failure else ''}; write <= or >= "
-            "instead of ="
+            f"{wanted.text}: a search with = starts from the present value of the quantity, but "
+            "the present mooring has no such value"
+            f"{f' ({before.failure})' if before.failure else ''}; write <= or >= instead of ="
         )
     first = 0.0 if before.measured is None else before.measured - wanted.limit
     sign = -1.0 if wanted.relation == ">=" or (wanted.relation == "=" and first < 0.0) else 1.0
@@ -253,15 +253,16 @@ def _reason_and_advice(
     as_it_is = at(change.now).measured
     if as_it_is is not None and abs(best.measured - as_it_is) <= _NOTHING * abs(as_it_is):
         message = (
-            f"The present value comes closest, with {nearest}; {change.text} was tried {span}."
+            f"{change.text} was tried {span}. The present value gives the closest result, "
+            f"{nearest}."
         )
     else:
         message = (
-            f"The closest result is {nearest}, with {change.text} at {where}; "
-            f"{change.text} was tried {span}."
+            f"{change.text} was tried {span}. The closest result is {nearest}, with {change.text} "
+            f"at {where}."
         )
     for neighbour, side in zip(search.neighbours(least), ("Below", "Above"), strict=True):
         failure = at(neighbour).failure
         if failure is not None:
-            message += f" {side} this value: {failure.status}: {failure.message}"
+            message += f" {side} {where}: {failure.status}: {failure.message}"
     return message, "Relax the target, change another part, or extend the range with --between."

@@ -162,10 +162,10 @@ def _published(strains: list[float]) -> str:
     if not strains:
         return "no stiffness of such ropes has been published."
     if len(strains) == 1:
-        return f"the single published value means a stretch of {_percent(strains[0])} %."
+        return f"the single published value gives a stretch of {_percent(strains[0])} %."
     return (
-        f"published values differ by a factor of {strains[0] / strains[-1]:.2g}, which at this "
-        f"tension means a stretch of {_percent(strains[-1])} to {_percent(strains[0])} %."
+        f"published values differ by a factor of {strains[0] / strains[-1]:.2g}; at this "
+        f"tension they give a stretch of {_percent(strains[-1])} to {_percent(strains[0])} %."
     )
 
 
@@ -221,7 +221,7 @@ def fast_pieces(result: _Measured) -> list[tuple[ComponentRow, float]]:
 def fast_text(fast: Sequence[tuple[ComponentRow, float]]) -> str:
     """Describe the first of the pieces from `fast_pieces`, and the number of these pieces."""
     row, limit = fast[0]
-    count = f" ({len(fast)} pieces exceed the limits of their coefficients)"
+    count = f" ({len(fast)} pieces exceed the limits of their drag coefficients)"
     return (
         f"The Reynolds number of {row.label} is {power_text(row.reynolds)}; the drag coefficient "
         f"is valid up to {power_text(limit)}{count if len(fast) > 1 else ''}."
@@ -264,8 +264,9 @@ def _on_the_seabed(result: _Measured, solution: Solution) -> Iterator[str]:
         if worst > solution.depth_error + 1e-3:
             lying_length = say("grounded_length", solution.grounded_length)
             yield (
-                f"{lying_length} of line lies on the seabed, which is treated as a plane around "
-                f"the anchor; the depth grid differs from this plane by up to {worst:.2f} m there."
+                f"{lying_length} of line lies on the seabed. CALM treats the seabed as a plane "
+                "around the anchor; along this line, the depth grid differs from the plane by up "
+                f"to {worst:.2f} m."
             )
     if solution.landed and result.still_shape is result.shape and not solution.pulled:
         yield (
@@ -351,9 +352,9 @@ def buoyancy_of_sea_water(leg: Leg) -> tuple[Piece | Clamp, str] | None:
     others = len(floats) - 1
     which = floats[0].label + (f" and {others} other part{'s' * (others > 1)}" if others else "")
     return floats[0], (
-        f"The buoyancy of {which} is that in water of {CATALOGUE_DENSITY:g} kg/m³: without `mass` "
-        f"or `volume` it is not reduced, although in water of {density:.0f} kg/m³ the displaced "
-        f"water weighs {lost:.1f} % less."
+        f"The buoyancy of {which} is valid for water of {CATALOGUE_DENSITY:g} kg/m³. CALM does not "
+        "reduce this buoyancy, because neither `mass` nor `volume` is set. In water of "
+        f"{density:.0f} kg/m³, the displaced water weighs {lost:.1f} % less."
     )
 
 

@@ -171,11 +171,11 @@ def stretch(result: LegResult) -> Iterator[Verdict]:
         breaking = component.breaking_load
         bears = component.working_load or (breaking and _MEASURED * breaking)
         if piece.measured_load and bears and piece.measured_load > bears:
-            what = "its working load" if component.working_load else "a fifth of its breaking load"
+            share = "the working load" if component.working_load else "a fifth of the breaking load"
             message = (
                 f"{piece.label} is to be cut to length under a load of "
-                f"{say('load', piece.measured_load)}; this load exceeds {what}, "
-                f"{say('load', bears)}."
+                f"{say('load', piece.measured_load)}; this load exceeds {share} of the "
+                f"piece ({say('load', bears)})."
             )
             remedy = "Check the load in `length_at`; ropes are measured under a small load."
             yield verdict_on(piece, State.WARN, message, remedy)

@@ -268,7 +268,7 @@ def deployed_depth(handling: Handling) -> Iterator[Verdict]:
     message = (
         f"The mooring was deployed in {say('depth', depth)} of water instead of "
         f"{say('depth', designed)}. {what} is {say('depth', abs(moved))} {direction} than "
-        f"designed; the limit, the error of a sounding, is {say('depth', limit)}."
+        f"designed; the limit is {say('depth', limit)}, the error of a depth sounding."
     )
     remedy = "Run `calm diff` on this file to see the effect."
     yield at_most(None, abs(moved), limit, message, remedy, State.WARN)
@@ -368,7 +368,7 @@ def currents(legs: Sequence[Leg]) -> Iterator[tuple[Leg, Verdict]]:
         limit = SHARE_OF_ITS_RECORD * recorded
         if speed < limit:
             message = (
-                "The strongest current in the record from which this profile was taken is "
+                "This current profile comes from a record. The strongest current in the record is "
                 f"{say('speed', recorded)}; the strongest current checked is {say('speed', speed)}."
             )
             remedy = "Add an environment with that current, or run `calm batch` on the record."

@@ -124,9 +124,9 @@ def grid_layout(
         "id": archive_id(title, time[0], "GRID"),
         "summary": (
             f"{', '.join(QUANTITIES_MEASURED[name].long_name for name in fields)} of the mooring "
-            f"{title} on {len(levels)} fixed levels: measured at the moving depths of its "
-            f"{len(labels)} instruments, mapped to the levels by a Gaussian process over depth and "
-            "time, each value with its standard deviation."
+            f"{title} on {len(levels)} fixed levels. The values were measured at the moving "
+            f"depths of {len(labels)} instruments and mapped to the levels by a Gaussian process "
+            "over depth and time. Each value has a standard deviation."
         ),
         "keywords": ", ".join(f"EARTH SCIENCE > OCEANS > {one}" for one in _KEYWORDS),
         "keywords_vocabulary": GCMD,
@@ -153,9 +153,9 @@ def method_sentence(field: GriddedQuantity) -> str:
     scales = field.scales
     time = f" and {scales.time / 3600.0:.3g} h in time" * field.in_time
     return (
-        f"Gaussian process about the mean profile of the record, correlated over "
+        "Gaussian process about the mean profile of the record, with a correlation scale of "
         f"{scales.depth:.3g} m in depth{time}; {100.0 * scales.share:.2g} % of the variance is "
-        "not correlated"
+        "uncorrelated"
     )
 
 

@@ -97,10 +97,10 @@ def assign_instruments(path: Path, list_of_instruments: Path) -> AssignedInstrum
     if timeless:
         when = "" if date is None else f"; this time must be after the deployment ({date})"
         doubts.append(
-            f"{list_of_instruments.name}: for {len(timeless)} of {len(listed)} instruments the "
-            "clock offset is reported, but the times are not corrected for it. To correct them, "
-            "add a column `clock checked` with the time at which the clock was compared with true "
-            f"time{when}"
+            f"{list_of_instruments.name}: the list gives a clock offset for {len(timeless)} of "
+            f"{len(listed)} instruments, but CALM does not correct their times. To correct the "
+            "times, add a column `clock checked`: the time at which the clock was compared with "
+            f"true time{when}"
         )
     kept = [row for row in rows.values() if len(row) > 1]
     try:

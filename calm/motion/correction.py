@@ -48,7 +48,7 @@ OF_MOTION: Mapping[str, tuple[tuple[str, ...], tuple[str, str, Attributes]]] = {
     "depth_sd": (
         ("component",), ("m", "standard deviation of the depth of the upper end", _DEVIATION),
     ),
-    "current_factor": ((), ("1", "estimated current over measured current", {})),
+    "current_factor": ((), ("1", "estimated current divided by measured current", {})),
     "current_doubt": (("level",), ("1", "probability that the current at the level is wrong", {})),
     "residual": (("sensor",), ("m", "measured depth of the sensor minus its estimated depth", {})),
     "plain_depth": (("sensor",), (
@@ -128,7 +128,8 @@ def motion_layout(task: Task, record: MeasuredRecord) -> ResultLayout:
         "keywords": "EARTH SCIENCE > OCEANS > OCEAN PRESSURE",
         "keywords_vocabulary": GCMD,
         "processing_level": "Data interpolated",
-        "comment": "Depths estimated from the statics of the line; x and y count from the anchor",
+        "comment": "Depths estimated from the statics of the line; x and y are measured from the "
+        "anchor",
         "instrument": ", ".join(measured.label),
         "history": "\n".join([made, *read]),
     }

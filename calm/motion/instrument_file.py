@@ -345,8 +345,8 @@ def _describe(
         **{key: value for key, value in kept(result.attrs).items() if key not in _OF_MOTION},
         **(coverage(time, copy[name].values, _place(copy, result)) if time.size else {}),
         "title": f"{mooring}: {instruments.path.name}",
-        "summary": f"Contents of {instruments.path.name}, with depths at the mooring {mooring} "
-        "estimated by CALM from the statics of its line.",
+        "summary": f"Contents of {instruments.path.name}. CALM added depths that it estimated from "
+        f"the statics of the mooring {mooring}.",
         "comment": f"{mark} 1: {name} from the pressure of the instrument; 8: estimated; 9: none",
         "date_created": written(),
     }

@@ -279,8 +279,9 @@ def in_order(
             may_be = " or ".join(f"`{line.label[down[match[1][row]]]}`" for match in (best, second))
         raise UsageError(
             f"{series[rows[row]].named}, with a nominal depth of {one[row]:.0f} m, could be "
-            f"{may_be}: its file gives no label or serial number that is in the mooring file. Set "
-            "serial numbers in the mooring file, or name the part of each file with LABEL=FILE"
+            f"{may_be}, because the mooring file contains neither the label nor the serial number "
+            "of this instrument. Set serial numbers in the mooring file, or name the part of each "
+            "file with LABEL=FILE"
         )
     pairs = enumerate(best[1]) if few is one else ((j, i) for i, j in enumerate(best[1]))
     found = {rows[row]: down[at] for row, at in pairs}

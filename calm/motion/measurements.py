@@ -353,7 +353,7 @@ def read_currents(
         if label:
             if len(mine.label) > 1:
                 raise UsageError(
-                    f"{path} has {len(mine.label)} levels; `{label}=` needs a file with one"
+                    f"{path} has {len(mine.label)} levels; `{label}=` needs a file with one level"
                 )
             mine = replace(mine, label=(label,), depth=np.full_like(mine.depth, np.nan))
         found.append(_plausible(mine, maximum_speed))

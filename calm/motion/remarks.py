@@ -172,8 +172,8 @@ def alone_remarks(common: Common) -> list[str]:
     if not far and common.worst < WORST:
         return []
     return [
-        f"{LINE}: it is inconsistent with the pressures; a length, a float or the water depth is "
-        f"wrong. In the best fit, the cables are {100.0 * abs(length - 1.0):.1f} % "
+        f"{LINE}: its computed depths disagree with the pressures; a length, a float or the water "
+        f"depth is wrong. In the best fit, the cables are {100.0 * abs(length - 1.0):.1f} % "
         f"{'longer' if length > 1.0 else 'shorter'} than in the file, and the remaining error is "
         f"{100.0 * common.worst:.0f} % of the knockdown"
     ]

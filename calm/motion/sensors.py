@@ -63,7 +63,7 @@ def read_sensors(
         if label:
             if len(mine) > 1:
                 raise UsageError(
-                    f"{path} holds {len(mine)} sensors; `{label}=` needs a file with one"
+                    f"{path} holds {len(mine)} sensors; `{label}=` needs a file with one sensor"
                 )
             mine = [replace(mine[0], label=label)]
         found += mine
@@ -102,8 +102,8 @@ def _from_arrays(
             )
         # with several instruments, variable attributes describe no single instrument
         note = (
-            f"`{name}` is described as `{words[:80]}` for at least one instrument; the flags of "
-            "its values decide which of them are used"
+            f"`{name}` is described as `{words[:80]}` for at least one instrument; CALM uses the "
+            "values that have an accepted flag (--flags)"
         )
     unit = "pressure" if is_pressure else "length"
     factor = factor_of(variable, unit) / (PASCALS_PER_DBAR if is_pressure else 1.0)
@@ -330,8 +330,12 @@ def metre_notes(measured: Floats, expected: Floats, latitude: float) -> list[str
     if len(off) < 2 or not rms(off) > LEAST:
         return []
     for true, sign, cause in (
-        (pressure_at(measured, latitude), "low", "depths in metres recorded as dbar"),
-        (depth_of(measured, latitude), "high", "pressures in dbar recorded as depths in metres"),
+        (pressure_at(measured, latitude), "low", "depths in metres were recorded as dbar"),
+        (
+            depth_of(measured, latitude),
+            "high",
+            "pressures in dbar were recorded as depths in metres",
+        ),
     ):
         # no common offset is allowed, because an offset and a wrong length of the line together
         # would have the same effect as another unit
@@ -339,8 +343,8 @@ def metre_notes(measured: Floats, expected: Floats, latitude: float) -> list[str
         if left <= min(EXPLAINED * rms(off), BEYOND * float(off.std())):
             share = 100.0 * float(np.abs(measured / true - 1.0).mean())
             return [
-                f"all sensors: their readings are {share:.1f} % {sign}, as {cause} would be; they "
-                "are used as they are"
+                f"all sensors: their readings are {share:.1f} % {sign}, as if {cause}; CALM "
+                "does not correct them"
             ]
     return []
 

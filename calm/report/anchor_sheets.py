@@ -172,8 +172,9 @@ def _notes(plan: DropPlan) -> tuple[str, ...]:
     notes = [
         "Inertia is neglected, so the first 20 s, the touchdown transient and waves are not "
         "represented.",
-        "± is the numerical error: twice the change if segments and time steps are made twice as "
-        "long. The current and the drag of the anchor are less certain.",
+        "± is the numerical error. CALM also computes the drop with segments of twice the "
+        "length, and with time steps of twice the length. ± is twice the sum of both changes. The "
+        "current and the drag of the anchor are less certain.",
     ]
     if plan.rest_difference is not None:
         notes.append(

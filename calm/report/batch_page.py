@@ -118,8 +118,9 @@ def limits_table(summary: Summary) -> Table:
             words("when", lambda one: when(one.time), 0.0),
         ),
         note="Strength is judged at the ends of a piece and at its clamps; minimum tension is "
-        "judged at the ends. For anchor sliding, the value is H + friction × V, and the limit is "
-        "friction × weight in water / factor.",
+        "judged at the ends. For anchor sliding, the value is H + friction × V, where H is the "
+        "horizontal and V the vertical anchor load. The limit is friction × weight in water / "
+        "factor.",
         sortable=True,
     )
 

@@ -279,6 +279,6 @@ def stops_tables(summary: Summary) -> Iterator[Table]:
         words("profiler", 0),
         words("stop", 1),
         *(number(head, at) for at, head in enumerate(shares, 2)),
-        note="The percentage in a heading is the share of the profiles in which the stop is at "
-        "the tabulated pressure and depth, or shallower.",
+        note="Each heading gives a share of the profiles. In this share, the stop is at the "
+        "tabulated pressure and depth, or shallower.",
     )

@@ -194,8 +194,8 @@ def _write_frame(figure: Figure, axes: Axes, k: float, above: bool) -> None:
 
 
 _LOCI = (
-    "The loci are drawn for the point P with the y′ of the lower end A and the z′ of the upper end "
-    "B.\nA and B lie on the curve. H is their difference in height, D their distance, and L the "
+    "The loci are for the point P. P has the y′ of the lower end A and the z′ of the upper end B."
+    "\nA and B lie on the curve. H is their difference in height, D their distance, and L the "
     "length of cable between them."
 )
 _MARGIN = 1.5  # free margin around a label [pt]

@@ -32,8 +32,8 @@ def cutting_part(deck: Deck) -> ReportPart:
     """Build the cutting list, with cut lengths, positions of marks, and tolerances."""
     note = (
         "Lengths are unloaded unless a load is stated; marks are measured from the upper end "
-        f"under the same load. Tolerance: {_SHARE} of the length. Change in top depth: how much "
-        f"deeper (+) the top{' of the leg' if deck.result.several else ''} is if only this piece "
+        f"under the same load. Tolerance: {_SHARE} of the length. Change in top depth: increase "
+        f"in the depth of the top{' of the leg' if deck.result.several else ''} if only this piece "
         f"is {_SHARE} longer, in the {environment_text(deck.environment)}."
     )
     cables = [one for one in deck.cuts if not one.is_chain]

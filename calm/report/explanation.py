@@ -33,9 +33,9 @@ SMALLEST_SHARE = 0.005
 """Fraction of a total below which drag forces are summed in one row."""
 
 _SHARES = (
-    "Shares: all drag forces are increased together from zero to their full value. The share of "
-    "a force is the part of the total change that the increase of this force causes. Drag is the "
-    "horizontal force of the water."
+    "Shares: CALM increases all drag forces together from zero to their full values. The share "
+    "of a force is the part of the total change that this force causes. Drag is the horizontal "
+    "force of the water."
 )
 _CHANGES = (
     "A change of buoyancy applies to all buoyant parts, and a change of drag to all parts; "

@@ -80,9 +80,9 @@ def scales_table(fields: Mapping[str, GriddedQuantity]) -> Table:
         number("time scale", lambda one: _time_scale_text(one[1]), "h"),
         number("rest", lambda one: f"{100.0 * one[1].scales.share:.2g}", "%"),
         number("widened", lambda one: f"{one[1].beyond:.2f}"),
-        note="Correlation falls to 0.48 over one depth scale and to 0.37 over one time scale; "
-        "the rest of the variance is uncorrelated. Widened: factor by which the bands are widened "
-        "beyond the instruments, from a test that omits each instrument in turn.",
+        note="Correlation falls to 0.48 over one depth scale and to 0.37 over one time scale. "
+        "Rest: uncorrelated part of the variance. Widened: factor by which the bands are widened "
+        "beyond the instruments. CALM finds this factor by omitting each instrument in turn.",
     )
 
 
@@ -90,9 +90,9 @@ def methods_text(fields: Mapping[str, GriddedQuantity], levels: Floats) -> tuple
     """Return sentences for the methods section of a cruise report."""
     return (
         f"The values of {', '.join(fields)} at the estimated depths of the instruments were "
-        f"interpolated to {len(levels)} levels between {levels[0]:g} and {levels[-1]:g} m with a "
-        "Gaussian process in depth and time, which describes the deviations from the mean profile "
-        f"of the record (CALM {__version__}).",
+        f"interpolated to {len(levels)} levels between {levels[0]:g} and {levels[-1]:g} m. "
+        "The interpolation uses a Gaussian process in depth and time for the deviations from the "
+        f"mean profile of the record (CALM {__version__}).",
         *(
             f"{name}: {_instrument_count(field)} instruments; correlation scales of "
             f"{field.scales.depth:.3g} m in depth and {_time_scale_text(field)} h in time; "

@@ -225,7 +225,7 @@ def _anchor_table(signed: SignedMooring) -> Iterator[Table]:
         number("Sliding use %", sliding),
         note=f"Weight required: {factor:g} (V + H / {first.anchor_load.friction:.3g}). Uplift use "
         f"is V / (weight / {factor:g}); sliding use is H / "
-        f"[{first.anchor_load.friction:.3g} (weight / {factor:g} − V)]. Soil strength is not "
-        "checked.",
+        f"[{first.anchor_load.friction:.3g} (weight / {factor:g} − V)]. V is the vertical load, H "
+        "the horizontal load. Soil strength is not checked.",
         ruled=False,
     )  # fmt: skip

@@ -34,8 +34,8 @@ _WHOLE = (
 )
 _ASSUMED = (
     "Prior assumptions: buoyancy, weights, lengths and positions as in the mooring file; an "
-    "uncertainty of 15 % in the drag of each part, 1 % of the water depth in the datum, and 1 m "
-    "per sensor."
+    "uncertainty of 15 % in the drag of each part, 1 % of the water depth in the offset common to "
+    "all sensors, and 1 m in the offset of each sensor."
 )
 _NOTHING = "No sensor fault was found (clock, gain, offset, drift or slipped clamp)."
 
@@ -104,7 +104,7 @@ def methods_text(study: MotionEstimate, series: Sequence[SensorSeries]) -> tuple
         f"The depths of {len(series)} instruments between {str(time[0])[:16]} and "
         f"{str(time[-1])[:16]} ({len(time)} times) were estimated from the static equilibrium of "
         f"the line, the pressures of {', '.join(used.label)}, and {by} (CALM {__version__}).",
-        f"The estimates for the whole record are: {factors}; and a datum common to all pressures, "
+        f"The estimates for the whole record are: {factors}; and an offset common to all depths, "
         f"{common.datum:+.1f} m.",
         f"The knockdown of the uppermost pressure sensor was up to {down.max():.0f} m (median "
         f"{np.median(down):.0f} m, 95th percentile {np.quantile(down, 0.95):.0f} m). The standard "
@@ -128,7 +128,7 @@ TITLES = {
 }
 
 _RMS = (
-    "Rms is the rms difference from the measured depths, after removal of the mean in calm periods "
+    "Rms is the rms difference from the measured depths, minus the mean difference in calm periods "
     "(the 10 % of times with the smallest knockdown)."
 )
 PLAIN = (
@@ -211,7 +211,7 @@ def factors_table(factors: Mapping[str, tuple[float, float, float]], datum: floa
         for name, (value, low, high) in factors.items()
     ]  # fmt: skip
     fields = words("factor for the whole record", 0), number("value", 1), number("95 % interval", 2)
-    note = f"A common datum of {datum:+.1f} m is applied to all depths."
+    note = f"A common offset of {datum:+.1f} m is added to all depths."
     return table_of("", rows, *fields, note=note)
 
 

@@ -173,9 +173,11 @@ def audit_refusal(ending: int, value: float) -> NoEquilibrium:
     """Return the exception for a shape that failed the audit."""
     if ending == solution.NOT_CLOSED:
         return Status.NOT_CONVERGED.because(
-            f"The loads do not balance the force at the line's end (relative error {value:.1e})."
+            f"The forces on the line do not balance (relative error {value:.1e})."
         )
-    return Status.NOT_CONVERGED.because(f"A piece is {value:.1e} rad out of balance.")
+    return Status.NOT_CONVERGED.because(
+        f"The moments on a piece do not balance (error {value:.1e} rad)."
+    )
 
 
 def closing_refusal(closed: Closed) -> NoEquilibrium:
@@ -188,7 +190,7 @@ def closing_refusal(closed: Closed) -> NoEquilibrium:
         )
     if closed.ending == solution.SLACK_ON_DIGITS:
         return Status.SLACK.because(
-            "The line is slack: rounding of the buoyancy in use changes its shape."
+            "The line is slack: its shape changes if the buoyancy in use is rounded."
         )
     return Status.NOT_CONVERGED.because(
         f"The computed end of the line is {closed.value:.3g} m from the anchor."

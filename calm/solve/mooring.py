@@ -261,7 +261,7 @@ class Nearby:
         base, compiled = self.solution, self._compiled
         if closed.landed != base.landed:
             raise Status.NOT_CONVERGED.because(
-                "Of the solved line and the changed line, only one has a part on the seabed."
+                "Either the solved line or the changed line has a part on the seabed, but not both."
             )
         errors = Errors(base.depth_error, base.tension_error, 0.0, base.lift_error, base.pull_error)
         referee = referee_of(line, water, 0.0, compiled)

@@ -341,11 +341,11 @@ def _half_out(net: NetSearch, depth: float, lacking: bool) -> NoEquilibrium | No
         body = bodies[np.argmin(off)]
         what = "{piece}" if shape.clamp[body] < 0 else "a clamp on {piece}"
         why = (
-            f"the upper end of the line would be {above:.2g} m above or {-below:.2g} m below the "
-            "tow point"
+            f"the upper end of the line would be {above:.2g} m above the tow point in one case and "
+            f"{-below:.2g} m below it in the other"
         )
         if lacking:
-            why = "the strumming frequency of the line converges in neither state"
+            why = "the strumming frequency of the line does not converge in either case"
         return Status.NO_EQUILIBRIUM.because(
             f"There is no equilibrium with {what} fully in water or fully in air: {why}. CALM does "
             f"not solve an equilibrium with {what} partly out of the water.",

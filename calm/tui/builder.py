@@ -148,9 +148,9 @@ class BuilderScreen(ComparingScreen):
             for number, label in enumerate(steps.steps[:_MOST_STEPS], 1)
         )
         text = f"Go back to the state before one of the last {len(answers)} changes."
-        text += " U redoes changes that you undo."
+        text += " U redoes an undone change."
         if (more := len(steps.steps) - _MOST_STEPS) > 0:
-            text += f" {more} changes are older; u undoes them one at a time."
+            text += f" Older changes, not listed: {more}; u undoes one change at a time."
         choose(self.app, Question("Changes", text, answers))
 
     def action_search(self, purpose: Purpose) -> None:

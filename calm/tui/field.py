@@ -245,7 +245,7 @@ class Cycle(Widget, can_focus=True):
     @property
     def hint(self) -> str:
         """Text that names the keys of this widget."""
-        return "← → another, ↑ ↓ go on"
+        return "← → choose, ↑ ↓ next field"
 
     def show(self, word: str) -> None:
         """Select a word."""

@@ -202,10 +202,12 @@ class LinePane(LineSearch):
             answers = [
                 Answer("o", "the original only", duplicate),
                 Answer(
-                    "b", "both; accepted findings will refer to `NAME *`", partial(duplicate, named)
+                    "b",
+                    "original and copy; accepted findings will refer to `NAME *`",
+                    partial(duplicate, named),
                 ),
             ]
-            choose(self.app, Question("Which pieces should these keys refer to?", text, answers))
+            choose(self.app, Question("Which pieces should these entries refer to?", text, answers))
         elif chosen:
             duplicate()
 

@@ -117,7 +117,7 @@ def _deployed(label: str, draft: Draft, texts: Mapping[str, str]) -> Draft:
     return entered(draft, _ITEMS, ("label", label), given)
 
 
-_SEVERAL = "For a count, give one number for each, separated by commas."
+_SEVERAL = "If the row has a count, separate the serial numbers by commas."
 
 
 def equipment_sheet(label: str, values: Mapping[str, Any], *, is_clamp: bool) -> InputSheet:

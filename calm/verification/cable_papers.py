@@ -120,14 +120,18 @@ BRACONNOT = Source(
 values of K = ρ Cx D V²/(2w). A is the lower end of the cable and B the upper end; angles are
 measured from the current.
 
-For his buoy (K = 2.4, w = 5 N/m, φ_B = 75°, T_B = 350 N, 20 m above A) Braconnot reads 28.3 m of
-cable, 18.5 m, 22° and 250 N off the charts. The true K of this buoy is 2.7, for which the length is
-30.71 m. For his towed cable (K = 2.4, w = 0.5 N/m, φ_B = 140°, T_B = 100 N, L = 100 m) the paper
-gives a depth of 69.5 m, because it computes H₀ with 1 + z′ = 2.4. The point is at z′ = 2.27, so the
-depth is 73.20 m. At his tow speed of one knot, K is 3.176 and the depth 82.87 m. Two more cases are
-integrals of T′ = w sin φ, φ′ = (w/T)(cos φ + K |sin φ| sin φ) to nine digits: a cable of the second
-branch, beyond the critical angle of 144.4°, and a cable that dips below its lower end. All values
-are compared with `calm.analytic.chart`; the buoy and the tow are also compared with the march.""",
+His first example is a buoy 20 m above A, with K = 2.4, w = 5 N/m, φ_B = 75° and T_B = 350 N. From
+the charts, Braconnot reads a cable length of 28.3 m, a distance D of 18.5 m, an angle φ_A of 22°
+and a tension T_A of 250 N. The true K of this buoy is 2.7; with this K, the length is 30.71 m.
+
+His second example is a towed cable with K = 2.4, w = 0.5 N/m, φ_B = 140°, T_B = 100 N and L = 100
+m. The paper gives a depth of 69.5 m, because it computes H₀ with 1 + z′ = 2.4. The point is at z′ =
+2.27, so the depth is 73.20 m. At his tow speed of one knot, K is 3.176 and the depth 82.87 m.
+
+Two more cases are integrals of T′ = w sin φ, φ′ = (w/T)(cos φ + K |sin φ| sin φ) to nine digits.
+One is a cable of the second branch, beyond the critical angle of 144.4°. The other is a cable that
+dips below its lower end. All values are compared with `calm.analytic.chart`; the buoy and the tow
+are also compared with the march.""",
     (
         *table(
             [_READ[name] for name in ("L", "D", "phi_a", "T_A")],
@@ -245,24 +249,23 @@ def _amplitude(speed: float) -> float:
     return _LAW.amplitude(radians(_bare(speed).angle))
 
 
-_FITTED = (
-    "One unit of the last digit: A₁, B₁ and C₁ are fitted values, which are given to six digits."
-)
+_FITTED = "One unit of the last digit, because the fitted values A₁, B₁ and C₁ have six digits."
 
 BOURGET_MARICHAL = Source(
     "Bourget & Marichal",
     """Bourget and Marichal towed a sphere of 100 mm and 1.47 kg (Cx 0.90) at 1.30 m/s in fresh
-water, on 3.845 m of cable of 17 mm and 2383 kg/m³. In their model, the whole cable strums at one
-frequency, F = 0.166 V₀ sin φ_n/D, where φ_n is the angle at the ship. The amplitude is a/D = A₁ +
-B₁ φ + C₁ φ², and the drag coefficient is C* = C₀ f(λ), at most 3.0. The paper does not give A₁, B₁
-and C₁. CALM's values are fitted to three results of the paper: a/D = 0.5 at 90°, C* = 1.25 at the
-sphere, φ_n = 16.28°. These three therefore agree by construction. The frequency, the immersion, the
-maximum C*, and the amplitudes of the bare cable from 0.6 to 2.0 m/s, for which the paper has 0.9 to
-1.4, are not fitted. The factor of f, printed as 2/π on [0, π], must be 1/π, because f(0) = 1.
+water. The cable has a length of 3.845 m, a diameter of 17 mm and a density of 2383 kg/m³. In their
+model, the whole cable strums at one frequency, F = 0.166 V₀ sin φ_n/D, where φ_n is the angle at
+the ship. The amplitude is a/D = A₁ + B₁ φ + C₁ φ², and the drag coefficient is C* = C₀ f(λ), at
+most 3.0. The paper does not give A₁, B₁ and C₁. CALM's values are fitted to three results of the
+paper: a/D = 0.5 at 90°, C* = 1.25 at the sphere, φ_n = 16.28°. These three results therefore agree
+by construction. The frequency, the immersion and the maximum C* are not fitted. Neither are the
+amplitudes of the bare cable, for which the paper has 0.9 to 1.4 at 0.6 to 2.0 m/s. The paper prints
+2/π as the factor of f on [0, π]; the factor must be 1/π, because f(0) = 1.
 
 The paper computes 3.56 Hz and measured 4.07 Hz. CALM's 3.559 Hz agrees with the computed value; the
-difference of 13 % is an error of the model. The same tow with a constant C of 1.2 was computed
-without CALM.""",
+difference of 13 % is an error of the model. The last case is the same tow with a constant C of 1.2,
+computed without CALM.""",
     (
         Case("strumming: angle φ_n at the ship", 16.280, "°", 1e-3, _FITTED,
              lambda: _example(True).angle, Kind.BY_CONSTRUCTION),
@@ -277,10 +280,10 @@ without CALM.""",
         Case("strumming: C* at the ship", 3.0, "", 1e-9, "The upper limit of the model.",
              lambda: _coefficient(radians(_example(True).angle)),
              Kind.PUBLISHED),
-        Case("a/D at 90°", 0.5, "", 1e-4, _FITTED, lambda: _LAW.amplitude(pi / 2.0),
-             Kind.BY_CONSTRUCTION),
+        Case("strumming: amplitude a/D at 90°", 0.5, "", 1e-4, _FITTED,
+             lambda: _LAW.amplitude(pi / 2.0), Kind.BY_CONSTRUCTION),
         *(
-            Case(f"bare cable, {speed} m/s: a/D", expected, "", 0.05,
+            Case(f"bare cable, {speed} m/s: amplitude a/D", expected, "", 0.05,
                  "Half a unit of the last printed digit.",
                  partial(_amplitude, speed), Kind.PUBLISHED)
             for speed, expected in ((0.6, 0.9), (2.0, 1.4))
@@ -313,11 +316,11 @@ def _cable(start: float, mean: float) -> Station:
 
 VILLAIN_GUILLOT = Source(
     "Villain-Guillot, figure 1",
-    """S. Villain-Guillot's towed cable has a drag that is linear in each component of the velocity
-and equal along and across the cable (D = 1, k_t = k_n). With tan α_d = μg/(kV) and ℓ = T₀/√((μg)² +
-(kV)²), the cases have L = 1.25 and ℓ = 0.5, as in his figure 1. The expected values come from the
-closed form in the paper, and are compared with `calm.analytic.villain_guillot`. His formula for
-ρ(α) at D = 1 is printed upside down; s, T and the shape are right.""",
+    """In S. Villain-Guillot's model of a towed cable, the drag is proportional to the velocity (D =
+1), with the same factor along and across the cable (k_t = k_n). With tan α_d = μg/(kV) and ℓ =
+T₀/√((μg)² + (kV)²), the cases have L = 1.25 and ℓ = 0.5, as in his figure 1. The expected values
+come from the closed form in the paper, and are compared with `calm.analytic.villain_guillot`. His
+formula for ρ(α) at D = 1 is printed upside down; s, T and the shape are right.""",
     table(
         [
             CaseColumn("x", "", 5.5e-7, lambda cable: float(cable.x)),

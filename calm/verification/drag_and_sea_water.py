@@ -67,12 +67,13 @@ DRAG_CURVES = Source(
     """Cn of a long smooth cylinder depends on the Reynolds number (C23). CALM uses Wieselsberger's
 measurements (NACA report 121) up to 1.61e5 and the curve of DNV-RP-C205, figure 6-6, from 2.1e5. In
 the drag crisis the two sources differ, probably because of roughness or turbulence, which neither
-states; CALM uses DNV's curve there, because it is more recent and more conservative. Factors for
-finite length are from DNV-RP-C205, table 6-2, the drag of an end face from Kritzinger, and Cx of a
-sphere from F. A. Morrison's correlation (Michigan Technological University, 2016). Agreement with
-the printed points only excludes copying errors. Some points are therefore also compared with
-Cheng's fit (Journal of Hydraulic Engineering 139, 2013), which uses none of them. The curves apply
-only to components declared smooth.""",
+source states. CALM uses DNV's curve there, because this curve is more recent and more conservative.
+
+Factors for finite length are from DNV-RP-C205, table 6-2. The drag of an end face is from
+Kritzinger. Cx of a sphere is from F. A. Morrison's correlation (Michigan Technological University,
+2016). Agreement with the printed points only excludes copying errors. CALM's curve is therefore
+also compared with Cheng's fit (Journal of Hydraulic Engineering 139, 2013), which does not use the
+printed points. The curves apply only to components declared smooth.""",
     (
         *(
             Case(f"C23 cylinder, Re {reynolds:g}, Wieselsberger", cn, "", _SHARE, _COPIED,
@@ -87,7 +88,7 @@ only to components declared smooth.""",
         *(
             Case(f"C23 cylinder, Re {reynolds:g}, Cheng", round(cheng(reynolds), 4), "",
                  0.05 * cheng(reynolds),
-                 "5 %, the difference between fit and measurements from Re 17 to 1.6e5.",
+                 "5 %, the difference between fit and measurements for Re from 17 to 1.6e5.",
                  partial(cylinder_coefficient, reynolds), Kind.CLOSED_FORM)
             for reynolds in (17.7, 63.6, 196.0, 892.0, 5.15e3, 1.5e4, 6.55e4, 1.07e5)
         ),
@@ -239,10 +240,10 @@ by the manufacturer.
 CALM_PAPER = Source(
     "Paper on the original CALM",
     """The paper on the original CALM has a table of dynamic viscosities, in mPl, which is mPa s. It
-also has the drag of an Aanderaa RCM4/RCM5 at five speeds, with the rule K = Σ(F/V) / ΣV, by which
-CALM derives a drag from such measurements. The paper gives K as 2.694 N. The manufacturer's forces
-are in kilograms-force, as the drag of a plate as large as the meter confirms, so K is 26.4
-N/(m/s)².""",
+also has the drag F of an Aanderaa RCM4/RCM5 at five speeds V, and the rule K = Σ(F/V) / ΣV. CALM
+uses this rule to derive a drag from such measurements. The paper gives K as 2.694 N. The
+manufacturer's forces are in kilograms-force, so K is 26.4 N/(m/s)². The drag of a plate as large as
+the meter confirms this unit.""",
     (
         *(
             Case(f"viscosity, {temperature} °C, {salinity} g/kg", printed, "mPa s",

@@ -227,10 +227,10 @@ def _nothing(name: str, tolerance: float, why: str, got: Callable[[], float]) ->
 
 
 _SAME = (
-    "Both solutions have the same segments. The tolerance covers rounding, and the 1e-9 of the "
-    "depth at which each root search stops."
+    "Both solutions have the same segments. The tolerance covers rounding and the root searches, "
+    "which stop at an error of 1e-9 of the depth."
 )
-_RODS = "The error of straight segments: 1 − cos(half an angle step), 4e-7 at 0.1°."
+_RODS = "The error of straight segments is 1 − cos(half an angle step): 4e-7 at a step of 0.1°."
 
 INVARIANTS = Source(
     "Invariants",
@@ -240,10 +240,12 @@ rope that stretches, four glass balls, a release, chain). The current turns with
 has an upward component, and the density grows with depth. Each difference is the maximum over all
 positions, divided by the depth, or the maximum over all tensions, divided by the largest tension.
 
-If the current grows with depth, there may be several equilibria. A float of 500 N, with a drag of
-100 N at 1 m/s, on 100 m of thread in a current of 0.2 m/s that rises to 3 m/s between 12 and 30 m
-has three. They are the roots 10.0032, 21.0044 and 61.4357 m of d = 110 − 100/√(1 + (D(d)/B)²). CALM
-gives the highest and reports the deepest; the equilibrium between them is unstable.""",
+If the current grows with depth, a mooring may have several equilibria. The example is a float of
+500 N, with a drag of 100 N at 1 m/s, on 100 m of thread in 110 m of water. The current is 0.2 m/s
+down to 12 m, and grows to 3 m/s at 30 m. The float has three equilibria, at depths d of 10.0032,
+21.0044 and 61.4357 m. These depths are the roots of d = 110 − 100/√(1 + (D(d)/B)²), with the
+buoyancy B and the drag D. CALM gives the highest equilibrium and reports the deepest; the
+equilibrium between them is unstable.""",
     (
         _nothing("current turned by 37°: the line turns", 1e-8, _SAME, _turned),
         _nothing("current reversed: the line reverses", 1e-8, _SAME,
@@ -251,21 +253,21 @@ gives the highest and reports the deepest; the equilibrium between them is unsta
         _nothing("current mirrored: the line is mirrored", 1e-8, _SAME,
                  lambda: _mirrored(1.0, -1.0)),
         _nothing("seabed and axes moved by 100 m: the line follows", 4e-6,
-                 "The shapes have different segments; each has an error of 2e-6 at 0.1°.",
+                 "The two shapes have different segments. At 0.1°, each has an error of 2e-6.",
                  _difference_if_deeper),
         _nothing("lengths × 3, forces × 0.2, speeds × 1.7: similar", 1e-8, _SAME,
                  lambda: _difference_in_other_units(3.0, 0.2, 1.7)),
         _nothing("anchor reaction − sum of all loads", 1e-9,
                  "Rounding; the loads are recomputed from the final coordinates.", _reaction),
         _nothing("no current: plumb, tensions are sums", 1e-12, "Rounding.", _plumb),
-        _nothing("Ct 0: T_top − T_bottom − w Δz, over T", 1e-6, _RODS, _tension_by_height),
-        _nothing("constant friction: T − T₀ − w Δz − F s, over T", 1e-6, _RODS,
+        _nothing("Ct 0: T_top − T_bottom − w Δz, divided by T", 1e-6, _RODS, _tension_by_height),
+        _nothing("constant friction: T − T₀ − w Δz − F s, divided by T", 1e-6, _RODS,
                  _tension_by_height_and_friction),
         _nothing("S1000 with its cable in ten pieces", 1e-8,
                  "The error of the march is 1e-9 of the depth at an angle step of 0.01°.",
                  _difference_if_split),
         *(
-            Case(f"C20 three equilibria: depth of the {name}", depth, "m", 1e-6,
+            Case(f"C20 three equilibria: float depth in the {name}", depth, "m", 1e-6,
                  "The roots are given to nine digits; CALM closes to 1e-9 of the depth.", got,
                  Kind.CLOSED_FORM)
             for name, depth, got in (
@@ -312,16 +314,16 @@ CONVERGENCE = Source(
     "Order of convergence",
     """The heavy line of C5 in a uniform current of 1 m/s is solved at angle steps from 4° to 0.125°
 and compared with the closed form of `calm.analytic.uniform`, which shares no code with the march.
-The march is of second order: halving the step divides the error by four. The results that CALM
-reports are extrapolated from two such shapes and have much smaller errors.""",
+The march is of second order: halving the step divides the error by four. CALM extrapolates its
+results from two such shapes, so their errors are much smaller.""",
     (
         *(
             Case(f"C20 order, {coarse:g}° to {fine:g}°", 2.0, "", 0.05,
-                 "Fourth-order terms and the shorter last segment disturb the order.",
+                 "Fourth-order terms and the shorter last segment change the order slightly.",
                  partial(_order, coarse, fine), Kind.PROPERTY)
             for coarse, fine in ((2.0, 1.0), (1.0, 0.5), (0.5, 0.25))
         ),
-        Case("C20 miss of the free end at 1°", 0.0, "m", 5e-5 * LENGTH,
+        Case("C20 position error of the free end at 1°", 0.0, "m", 5e-5 * LENGTH,
              "CALM's stated accuracy at its default angle step: 5e-5 of the depth.",
              partial(heavy_line_error, 1.0), Kind.CLOSED_FORM),
     ),

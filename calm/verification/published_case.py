@@ -51,8 +51,8 @@ _MEANINGS = {
     "of the differential equations, another program.",
     Kind.PROPERTY: "Holds for any line and needs no reference.",
     Kind.BY_CONSTRUCTION: "A point to which CALM's curve is fitted or through which it is "
-    "drawn, or a value from a library that CALM calls. Agreement guards only against copying "
-    "errors and does not count as verification.",
+    "drawn, or a value from a library that CALM calls. Agreement excludes only copying errors and "
+    "does not count as verification.",
 }
 
 

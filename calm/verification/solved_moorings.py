@@ -200,30 +200,30 @@ sphere, below the third meter and at the anchor [kgf].
 """
 
 _PROGRAM = (
-    "1 m for heights and 2 % for tensions: the two programs have errors of 1 to 4 %, and differ "
-    "from each other by as much."
+    "1 m for heights and 2 % for tensions: each of the two programs has errors of 1 to 4 %, and "
+    "their results differ by as much."
 )
-_RANGE = "The range of the programs, plus half a unit of their last digit."
+_RANGE = "The range of the results of the programs, plus half a unit of the last digit."
 
 CDMS_1 = published_case.Source(
     "CDMS-1",
-    """CDMS-1 is an intermediate mooring of the user manual of Berteaux's CDMS package (C16). The
-users guide of R. Dewey's *Mooring Design & Dynamics* (MD&D) prints the results of Berteaux's SSMOOR
-and of MD&D. From the top, the mooring has a sphere of 1.2 m, 10 m of wire, three current meters
-with 98 m of Kevlar below the first two and 212.9 m below the third, ten glass balls, a release, 4.8
-m of chain and the anchor, in 525 m of water. The current is 1.5, 0.6 and 0.1 m/s at heights of 525,
-325 and 0 m.
+    """CDMS-1 is an intermediate mooring in the user manual of Berteaux's CDMS package (C16). Two
+programs have solved this mooring: Berteaux's SSMOOR, and R. Dewey's *Mooring Design & Dynamics*
+(MD&D). The users guide of MD&D prints the results of both. From the top, the mooring has a sphere
+of 1.2 m, 10 m of wire, three current meters, ten glass balls, a release, 4.8 m of chain and the
+anchor. Below each of the first two meters are 98 m of Kevlar, and below the third meter 212.9 m.
+The water is 525 m deep. The current is 1.5, 0.6 and 0.1 m/s at heights of 525, 325 and 0 m.
 
-**Why the programs differ.** From the third meter down, MD&D's tensions are 2 % above SSMOOR's. The
-difference is the downward component of the normal drag on an inclined line, which reduces the
-tension in the lower part of the line. SSMOOR and CALM include this component. The drag law of the
-MD&D version that solved the case (Cd cos³ θ and 0.01 π θ/90°, both along the current) does not. The
-users guide attributes the difference to |U|Uᵢ instead of Uᵢ², but these are equal in a current of
-one direction. An independent solution with rigid links and segments of 0.25 to 1 m has 815.1 kgf at
-the anchor with normal drag, and 826.6 kgf with MD&D's law. Each is within 0.3 % of the program with
-the same law. SSMOOR's offset is 4 to 6 m shorter than all others. CALM, here with normal drag and
-no tangential drag, agrees with the independent solution to 0.1 m in height and 0.2 % in
-tension.""",
+**Why the programs differ.** From the third meter down, MD&D's tensions are 2 % above SSMOOR's. On
+an inclined line, the normal drag has a downward component, which reduces the tension in the lower
+part of the line. SSMOOR and CALM include this component. MD&D does not: the version that solved the
+case has a drag of Cd cos³ θ and 0.01 π θ/90°, both along the current. The users guide attributes
+the difference to |U|Uᵢ instead of Uᵢ², but both are equal in a current of one direction. An
+independent solution has rigid links and segments of 0.25 to 1 m. Its tension at the anchor is 815.1
+kgf with normal drag, and 826.6 kgf with MD&D's law. Each of these values is within 0.3 % of the
+program with the same law. SSMOOR's offset is 4 to 6 m shorter than all other offsets. CALM, here
+with normal drag and no tangential drag, agrees with the independent solution to 0.1 m in height and
+0.2 % in tension.""",
     (
         *(
             case
@@ -243,8 +243,8 @@ tension.""",
         *table(
             [replace(_HEIGHT, tolerance=0.1), _OFFSET, *_tensions(0.002)],
             [("C16 independent solution", solved_cdms_1, PROGRAMS["independent"])],
-            "Heights 0.1 m, offset 0.2 m, tensions 0.2 %: the accuracy with which the printed data "
-            "define the mooring.", Kind.INDEPENDENT),
+            "Heights 0.1 m, offset 0.2 m, tensions 0.2 %: the accuracy of the printed data of the "
+            "mooring.", Kind.INDEPENDENT),
         *(
             Case(f"C16 independent solution: {name}", kgf, "kgf", 0.002 * kgf,
                  "0.2 %, the accuracy of the printed data of the mooring.", got,
@@ -258,7 +258,7 @@ tension.""",
              "Printed to the centimetre; the line below the ball is almost vertical.",
              lambda: _centre(_FIRST_GLASS, solved_cdms_1())[1], Kind.PUBLISHED),
         Case("C16 printed: 98 m of Kevlar under load", 98.24, "m", 0.011,
-             "Printed to the centimetre, plus 2 % of the stretch for the error of the tension.",
+             "Printed to the centimetre; 2 % of the stretch is added for the error of the tension.",
              lambda: _stretched_length(_FIRST_KEVLAR, solved_cdms_1()), Kind.PUBLISHED),
     ),
     picture="verification-cdms-1",

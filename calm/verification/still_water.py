@@ -40,7 +40,7 @@ from calm.verification.published_case import (
 )
 
 _MARCH = (
-    "1e-6 of the line's length or of the load. The printed forces act on the float; the error of "
+    "1e-6 of the line's length or of the load. The float exerts the printed forces. The error of "
     "the march is smaller at an angle step of 0.1°."
 )
 
@@ -117,13 +117,14 @@ _LANDED = (
 
 CATENARIES = Source(
     "Catenaries",
-    """These cases are elastic catenaries (M. Irvine, *Cable Structures*, 1981). C12 has ends 400 m
-apart, one 300 m above the other, 50 N/m and EA 5 MN, with an unstretched length of 520 m
-(suspended) or 490 m (taut). C13 is a line that reaches a frictionless seabed, the public example of
-the Python package *pycatenary*: ends 5.3 m apart, one 2.65 m above the other, 6.98 m of line, 1.036
-N/m, EA 560 kN. C14 is a level span of 300 m with 330 m of inextensible line of 20 N/m. The expected
-values are roots of the closed forms with residuals below 1e-12. They are compared with
-`calm.analytic.catenary` and, if the line can be moored, with the march.""",
+    """These cases are elastic catenaries (M. Irvine, *Cable Structures*, 1981). In C12, the ends
+are 400 m apart, one 300 m above the other. The line weighs 50 N/m and has an EA of 5 MN and an
+unstretched length of 520 m (suspended) or 490 m (taut). In C13, the public example of the Python
+package *pycatenary*, the line reaches a frictionless seabed. Its ends are 5.3 m apart, one 2.65 m
+above the other. The line has a length of 6.98 m, a weight of 1.036 N/m and an EA of 560 kN. C14 is
+a level span of 300 m with 330 m of inextensible line of 20 N/m. The expected values are roots of
+the closed forms with residuals below 1e-12. They are compared with `calm.analytic.catenary` and, if
+the line can be moored, with the march.""",
     (
         *table(
             [*_pulls(5.5e-4), _LOWER_END],
@@ -238,7 +239,7 @@ _DROPPED = FallingAnchor(weight=8896.0, drag=sphere_drag(0.81, 1.0))
 
 _INERTIA = (
     "3 % of a time or a tension, 8 % of the fall-back: the error that neglecting inertia may "
-    "cause. Without inertia, the results of the other program change by 0.4 and 1.1 %."
+    "cause. Without inertia, the results of the independent program change by 0.4 and 1.1 %."
 )
 
 
@@ -307,17 +308,18 @@ _PLUMB = sqrt(
 )
 """Terminal speed of the vertical line in closed form, √(net weight/sum of the drags) [m/s]."""
 _ALONE = sqrt(10_000.0 / (100.0 * _DENSITY / REFERENCE_DENSITY))
-_THREAD = "The drag of the thread and the cork, and the bend that remains in the line."
+_THREAD = "The drag of the thread and the cork, and the remaining bend of the line."
 
 ANCHOR_DROP = Source(
     "Anchor drop",
     """The deployment example of WHOI Cable (J. Gobat & M. Grosenbaugh) has 1050 m of wire between a
-sphere of 1.5 m at the surface and an anchor of 8896 N in water, released at 2 knots in 1000 m of
-still water. The expected values come from a program with inertia and added mass, and with the drag
-|V|V on the end bodies, as in CALM. WHOI Cable 3.12 computes the drag of the end bodies axis by
-axis, and finds a fall time of 233 to 234 s and a fall-back of 107.9 m; the other program, with this
-drag law, finds 232.6 s and 108.3 m. The distance streamed is from WHOI Cable's static solution. Two
-terminal speeds follow, of a vertical (*plumb*) line and of a heavy sphere. Each is compared with
+sphere of 1.5 m at the surface and an anchor of 8896 N in water. The anchor is released at 2 knots
+in 1000 m of still water. The expected values come from an independent program with inertia and
+added mass. In this program, as in CALM, the drag of the end bodies is proportional to |V|V. WHOI
+Cable 3.12 computes the drag of the end bodies axis by axis, and finds a fall time of 233 to 234 s
+and a fall-back of 107.9 m. With the drag law of WHOI Cable, the independent program finds 232.6 s
+and 108.3 m. The distance streamed is from WHOI Cable's static solution. The last two cases are the
+terminal speeds of a vertical (*plumb*) line and of a heavy sphere. Each speed is compared with
 √(W/K), where W is the net weight and K the sum of the drags.""",
     (
         Case("streamed behind the ship", 894.8, "m", 0.5, "The chain's bars are 10 m long.",
@@ -333,7 +335,8 @@ terminal speeds follow, of a vertical (*plumb*) line and of a heavy sphere. Each
         Case("maximum tension below the float", 7432.0, "N", 0.03 * 7432.0, _INERTIA,
              lambda: _pull(1, 0), Kind.INDEPENDENT),
         Case("speed of a plumb line", _PLUMB, "m/s", 1e-4,
-             "The line is straight after 2850 m; a stretch of 0.1 % reduces the speed by 3e-5 m/s.",
+             "After a fall of 2850 m, the line is straight. A stretch of 0.1 % reduces the speed "
+             "by 3e-5 m/s.",
              _plumb, Kind.CLOSED_FORM),
         Case("speed of a heavy sphere", _ALONE, "m/s", 0.01, _THREAD, _alone, Kind.CLOSED_FORM),
     ),

@@ -40,7 +40,7 @@ _FLOAT = point(4905.0, sphere_drag(1.0, 0.65))
 _LENGTH = 1000.0
 _HEAVY = 2.0
 
-_PRINTED = f"{PRINTED} One straight rod is exact."
+_PRINTED = f"{PRINTED} The line is straight, so one segment is exact."
 _SEVEN_DIGITS = (
     "1e-6 of the line's length or of the tension, 6e-5° for an angle. The expected values have "
     "seven digits; the error of the march is 4e-8 at an angle step of 0.1°."
@@ -130,16 +130,17 @@ _VERTICAL = CaseColumn[Ends]("anchor, vertical", "N", 5e-3, lambda ends: ends.ve
 
 UNIFORM_CURRENT = Source(
     "Floats and lines in a uniform current",
-    """The cases are a float of 500 kgf and 1 m (Cx 0.65) on 100 m of line without weight or drag
-(C1); a ball on a thread from the R package *mooring* by D. Kelley, in water of 1027 kg/m³ (C2); and
-the float of C1 on 1000 m of 12.7 mm line with Cn 1.3, which is neutral (C3), weighs 2 N/m (C4), or
-weighs 2 N/m and has a Ct of 0.01 (C5).
+    """C1 is a float of 500 kgf and 1 m (Cx 0.65) on 100 m of line without weight or drag. C2 is a
+ball on a thread, from the R package *mooring* by D. Kelley, in water of 1027 kg/m³. In C3, C4 and
+C5, the float of C1 is on 1000 m of 12.7 mm line with Cn 1.3. The line is neutral in C3 and weighs 2
+N/m in C4 and C5; in C5 it also has a Ct of 0.01.
 
 C1 and C2 have elementary solutions: tan θ = D/B, T² = B² + D². C3 is a catenary on its side, cot φ
-= cot φ₀ + R s/T at constant T. C4 and C5 are quadratures of T′ = w sin φ + F, T φ′ = w cos φ − R
-sin² φ, with a relative error of 1e-10, evaluated without CALM. In C4 the tension differs between
-two points by w times their difference in height. C5 tests the sign of the tangential drag. All
-cases use g = 9.81 m/s² and, except C2, ρ = 1025 kg/m³. The march has an angle step of 0.1°.""",
+= cot φ₀ + R s/T at constant T. The values of C4 and C5 are quadratures of T′ = w sin φ + F, T φ′ =
+w cos φ − R sin² φ, with a relative error of 1e-10, evaluated without CALM. In C4 the tension
+differs between two points by w times their difference in height. C5 tests the sign of the
+tangential drag. All cases use g = 9.81 m/s² and, except C2, ρ = 1025 kg/m³. The march has an angle
+step of 0.1°.""",
     (
         *table(
             _thread(100.0, 5.5e-5, 5.5e-6, 5.5e-6),
@@ -207,12 +208,12 @@ _AT_THE_SHIP = "angle at the ship"
 
 TOWED_CABLES = Source(
     "Towed cables",
-    """A bare towed cable of 10 mm, 2.5 N/m and Cn 1.5 (C7) is straight at the critical angle, cos
-φc = √(1 + p²/4) − p/2, where p is its weight divided by its drag perpendicular to the stream. In
-C8, 300 m of this cable tow a body that weighs 2000 N in water and has a drag area of 0.05 m². The
-friction along the cable is ½ρ 0.02 D V² cos² φ. The expected values of C8 are quadratures of the
-differential equations, with a relative error of 1e-10, evaluated without CALM. The march has an
-angle step of 0.1° in C8.""",
+    """C7 is a bare towed cable of 10 mm, 2.5 N/m and Cn 1.5. The cable is straight at the critical
+angle φc, with cos φc = √(1 + p²/4) − p/2. Here p is the weight of the cable divided by the drag of
+a cable perpendicular to the stream. In C8, 300 m of this cable tow a body that weighs 2000 N in
+water and has a drag area of 0.05 m². The friction along the cable is ½ρ 0.02 D V² cos² φ. The
+expected values of C8 are quadratures of the differential equations, with a relative error of 1e-10,
+evaluated without CALM. The march has an angle step of 0.1° in C8.""",
     (
         *table(
             [CaseColumn[Wake](_AT_THE_SHIP, "°", 5.5e-5, lambda wake: wake.angle)],
@@ -224,7 +225,7 @@ angle step of 0.1° in C8.""",
             [
                 CaseColumn[Wake]("tension at the ship", "N", 1e-6, lambda wake: wake.tension, True),
                 CaseColumn[Wake](_AT_THE_SHIP, "°", 1e-4, lambda wake: wake.angle),
-                CaseColumn[Wake]("body aft of the ship", "m", 3e-4, lambda wake: wake.aft),
+                CaseColumn[Wake]("distance aft of the ship", "m", 3e-4, lambda wake: wake.aft),
                 CaseColumn[Wake]("depth of the body", "m", 3e-4, lambda wake: wake.depth),
             ],
             _by_speed("C8 with a body", _with_body, (
@@ -315,11 +316,11 @@ PODE = Source(
     "Pode's cable functions",
     """L. Pode (David Taylor Model Basin reports 687 and 717, 1951) tabulated τ, σ, ξ and η,
 functions of a heavy cable in a uniform stream, with a constant friction F = f R along the cable
-(C6). The expected values, between φ and 90°, are quadratures of his integrals to 1e-10, not copies
-of his tables. They are compared with `calm.analytic.uniform` and with τ − 1 = p η + f σ. Cases with
-friction are also compared with the march of a towed body. Cases without friction are also compared
-with the closed form of the tension. E. E. Zajac (Bell System Technical Journal 36, 1957) also gives
-the critical angle, cos φc = √(1 + p²/4) − p/2.""",
+(C6). The expected values are quadratures of his integrals from φ to 90°, with an error of 1e-10;
+they are not copied from his tables. They are compared with `calm.analytic.uniform` and with τ − 1 =
+p η + f σ. Cases with friction are also compared with the march of a towed body. Cases without
+friction are also compared with the closed form of the tension. E. E. Zajac (Bell System Technical
+Journal 36, 1957) also gives the critical angle, cos φc = √(1 + p²/4) − p/2.""",
     (
         *table(
             [
@@ -342,8 +343,8 @@ the critical angle, cos φc = √(1 + p²/4) − p/2.""",
             [(_name(critical, f, angle), partial(_march, critical, f, sigma),
               (angle, tau, xi, eta))
              for critical, f, angle, tau, sigma, xi, eta in _TABLE if f > 0.0],
-            "5e-7 for the rounding of the printed cable length σ, and about 1e-6 for the march: "
-            "1e-7 of this length at an angle step of 0.1°.", Kind.INDEPENDENT),
+            "5e-7 for the rounding of the printed cable length σ, and about 1e-6 for the march, "
+            "whose error is 1e-7 of the cable length at an angle step of 0.1°.", Kind.INDEPENDENT),
         *(_tension(critical, angle, tau) for critical, f, angle, tau, *_ in _TABLE if f == 0.0),
         Case("C6 all rows: maximum |τ − 1 − p η − f σ|", 0.0, "", 1e-11,
              "Exact; the quadratures have an error of 1e-12.", _identity_missed, Kind.PROPERTY),

@@ -113,7 +113,7 @@ def test_clock_offsets_and_what_has_no_place(assigned, calm):
     assert "{label: middle, serial: 3223, remark: clock 3 s early}" in written
     assert "list.csv, line 5: Aquadopp 99 matches no part of the line" in done.err
     said = " ".join(done.err.split())
-    assert "for 2 of " in said and "the times are not corrected for it" in said
+    assert "offset for 2 of " in said and "does not correct their times" in said
     assert "true time; this time must be after the deployment" in said
     with open("out.json") as file:
         document = json.load(file)

@@ -845,9 +845,9 @@ def test_a_line_lies_on_the_plane_of_a_grid(tmp_path: Path) -> None:
             for one in (grid, plane)
         )
         assert there == pytest.approx(where, abs=0.3 + off)
-        said = [each for each in grid.warnings if "treated as a plane" in each]
+        said = [each for each in grid.warnings if "as a plane around" in each]
         assert len(said) == (bowl > 0.0)
-        told = float(re.search(r"up to ([\d.]+) m there", said[0])[1]) if said else 0.0
+        told = float(re.search(r"by up to ([\d.]+) m\.", said[0])[1]) if said else 0.0
         assert told == pytest.approx(bowl * grid.anchor.grounded_length**2, rel=0.05, abs=0.06)
 
 

@@ -247,7 +247,7 @@ def test_depths_recorded_as_pressures_are_named(calm, given, truth):
     for file, said in (("p.csv", False), (given("m.csv", values=truth[1]), True)):
         done = calm(*COMMAND, "--pressures", file, "-o", f"{file}.nc")
         text = " ".join((done.out + done.err).split())
-        assert ("0.9 % low, as depths in metres recorded as dbar would be" in text) == said
+        assert ("0.9 % low, as if depths in metres were recorded as dbar" in text) == said
 
 
 def test_flags_that_leave_no_pressure_are_named(calm, given, truth, folder):

@@ -858,7 +858,7 @@ def test_enter_takes_a_form_and_goes_on(drive, small):
         await driver.press("w")
         driver.app.screen.query_one("#density-form").focus()
         await driver.pilot.pause()
-        assert "← → another, ↑ ↓ go on" in driver.screen
+        assert "← → choose, ↑ ↓ next field" in driver.screen
         await driver.press("enter")
         assert driver.app.focused is field(driver, "density").input
         driver.app.screen.query_one("#current-form").focus()

@@ -91,11 +91,11 @@ def test_a_rope_stretches_by_its_table_and_thins(solve):
 @pytest.mark.parametrize(
     ("material", "told"),
     [
-        ("nylon", "published values differ by a factor of 9, which at this "
-         "tension means a stretch of 1.6 to 14 %."),
-        ("Dyneema", "published values differ by a factor of 2.4, which at this "
-         "tension means a stretch of 0.021 to 0.05 %."),
-        ("kevlar", "the single published value means a stretch of 0.031 %."),
+        ("nylon", "published values differ by a factor of 9; at this "
+         "tension they give a stretch of 1.6 to 14 %."),
+        ("Dyneema", "published values differ by a factor of 2.4; at this "
+         "tension they give a stretch of 0.021 to 0.05 %."),
+        ("kevlar", "the single published value gives a stretch of 0.031 %."),
         ("vectran", "no stiffness of such ropes has been published."),
     ],
 )  # fmt: skip

@@ -153,7 +153,7 @@ def test_a_current_weaker_than_its_own_record_is_told(tmp_path):
     calm, storm = (
         of(tmp_path, f"{{file: record.csv, time: '2026-01-01T{hour}:00'}}") for hour in ("00", "06")
     )
-    told = "The strongest current in the record from which this profile was taken is 0.90 m/s; "
-    assert said(calm)[0] == ("warn", f"{told}the strongest current checked is 0.30 m/s.")
+    told = "This current profile comes from a record. The strongest current in the record is "
+    assert said(calm)[0] == ("warn", f"{told}0.90 m/s; the strongest current checked is 0.30 m/s.")
     assert [state for state, _ in said(storm)] == ["pass"]
     assert [state for state, _ in said(calm, storm)] == ["pass"]

@@ -221,7 +221,7 @@ def test_columns_of_a_table_are_pressures_or_depths_each_in_its_unit(tmp_path):
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        (["x=two.nc"], "holds 2 sensors; `x=` needs a file with one"),
+        (["x=two.nc"], "holds 2 sensors; `x=` needs a file with one sensor"),
         (["a=one.nc", "two.nc"], "two sensors are called `a`"),
         (["wide.nc"], "must have a time and an instrument dimension"),
     ],
@@ -248,7 +248,7 @@ def test_a_comment_that_merging_left_condemns_no_instrument_whose_flags_are_good
     invented.to_netcdf(tmp_path / "stack.nc", engine="h5netcdf")
     a, b = read_sensors([str(tmp_path / "stack.nc")], frozenset({1, 2}), -32.0, 300.0)
     assert (a.label, b.label, a.dropped, b.dropped) == ("a", "b", 1, 2)
-    assert "the flags of its values decide" in a.note and a.note == b.note
+    assert "values that have an accepted flag" in a.note and a.note == b.note
     invented.drop_vars("p_qc").to_netcdf(tmp_path / "bare.nc", engine="h5netcdf")
     with pytest.raises(InputError, match="is not a measurement"):
         read_sensors([str(tmp_path / "bare.nc")], frozenset({1, 2}), -32.0, 300.0)

@@ -106,7 +106,7 @@ def test_a_line_that_misses_pressures_alone_is_named():
     assert alone_remarks(known) == []
     (said,) = alone_remarks(replace(known, factors={"length": 0.98}))
     assert said.startswith(
-        "the line: it is inconsistent with the pressures; a length, a float or the water depth "
-        "is wrong. In the best fit, the cables are 2.0 % shorter than in the file"
+        "the line: its computed depths disagree with the pressures; a length, a float or the water "
+        "depth is wrong. In the best fit, the cables are 2.0 % shorter than in the file"
     )
     assert len(alone_remarks(replace(known, worst=0.3))) == 1

@@ -139,8 +139,11 @@ def test_times_that_are_late_are_set_back():
 def test_depths_recorded_as_pressures_are_named_and_errors_of_clamps_are_not():
     place = np.array([220.0, 400.0])
     wrong = depth_of(place, 45.0)  # depths in metres read as dbar
-    assert "0.9 % low, as depths in metres recorded as dbar" in metre_notes(wrong, place, 45.0)[0]
-    assert "0.9 % high, as pressures in dbar" in metre_notes(place, wrong + 0.1, 45.0)[0]
+    assert (
+        "0.9 % low, as if depths in metres were recorded as dbar"
+        in metre_notes(wrong, place, 45.0)[0]
+    )
+    assert "0.9 % high, as if pressures in dbar" in metre_notes(place, wrong + 0.1, 45.0)[0]
     # nor is a common error of the same size, or one that a single sensor has
     for off in ([-2.9, -2.9], [-2.0, 0.0], [-0.1, -0.2]):
         assert not metre_notes(place + off, place, 45.0)
