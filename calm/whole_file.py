@@ -170,7 +170,8 @@ def _regular(path: Path) -> Iterator[None]:
 def no_such_file(path: Path) -> str:
     """Return the message about a missing file, with the most similar file name in the same folder.
 
-    A similar name has the suffix of the path, or .yaml for a path without a suffix or with .yml.
+    Only files with the same suffix are considered. For .yml, and for a path without a suffix, these
+    are the files with the suffix .yaml.
     """
     with contextlib.suppress(OSError, ValueError):
         suffix = {"": ".yaml", ".yml": ".yaml"}.get(path.suffix, path.suffix)

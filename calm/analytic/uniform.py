@@ -103,7 +103,7 @@ def tension_ratio(
     """Return the ratio of a heavy line's tensions at two angles, in closed form.
 
     Without friction and for φ₀ = 90°, the ratio is [u (1 + u cos φ)/(u − cos φ)]^((1 − u²)/(1 +
-    u²)) with u = cos φc.
+    u²)) with u = cos φc, where φc is the critical angle.
 
     Parameters
     ----------

@@ -266,7 +266,10 @@ class Design:
 
     @property
     def solutions(self) -> tuple[Solution, ...]:
-        """Solutions of all legs in the water of the file. Raises NoEquilibrium if there is none."""
+        """Solutions of all legs in the environment of the file.
+
+        Raises NoEquilibrium if the mooring has no equilibrium.
+        """
         if self.several:
             return self.standing.legs
         return (self.leg.equilibrium(self.water),)

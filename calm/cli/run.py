@@ -57,7 +57,8 @@ def run(
     Parameters
     ----------
     files
-        Mooring files. A file with `tow:` describes a tow; a file with `legs:` describes a net.
+        Mooring files. A file with `tow:` describes a tow; a file with `legs:` describes a net of
+        mooring legs.
     output
         Write the result to this file, in the format of its suffix. Repeatable. All moorings are
         written to a single .json or .csv file. The .csv file has a row per component or, with

@@ -223,7 +223,7 @@ def define(
 
     Parameters
     ----------
-    section : section of the entry, or a mapping of overrides that has this section as its base
+    section : section of the entry in its file, or overrides of the values in that section
     also_allowed : additional keys that messages about an unknown key may suggest
     context : `IN_AIR` for a component used in air, otherwise None
     """

@@ -22,8 +22,8 @@ def listed_serials(given: str | tuple[str, ...] | None) -> tuple[str, ...]:
 class Equipment(definition.Model):
     """Keys that describe the individual equipment at one position in the line.
 
-    `serial` is one number or a list of numbers. In an item of a file, the list contains the numbers
-    of all pieces that `count` produces.
+    `serial` is one number or a list of numbers. In an item with `count`, the list has the numbers
+    of all its pieces.
     """
 
     serial: Text | Annotated[tuple[Text, ...], Field(min_length=1)] | None = optional(

@@ -212,7 +212,7 @@ RULES = {
     "reserve": RuleText("Reserve buoyancy", "used_buoyancy",
         "unused share of the surface float's buoyancy",
         "The share must be at least `minimum_reserve` (0.3)",
-        "Dewey: a float that uses all its buoyancy submerges; the remaining share is for waves"),
+        "Dewey: a float submerges if all its buoyancy is in use; waves need a reserve"),
     "freeboard": RuleText("Freeboard", "freeboard",
         "freeboard of the surface float",
         "The freeboard must be above 0",
@@ -250,12 +250,12 @@ RULES = {
         _ONCE),
     "release-present": RuleText("Release", "",
         "whether a piece of a subsurface line has `role: release`, and whether it frees the line",
-        "The result is unknown if no piece has this role, if the release is clamped, or if it has "
-        "the name of a shackle, swivel, rope or similar part. There is a failure if no buoyancy is "
-        "above the release. There is a warning if the release is less than 1 m above the anchor, "
-        "or if a float is below the release. There is also a warning for a single release in more "
-        "than 100 m of water. A name or label with a word such as dual, twin or pair counts as two "
-        "releases",
+        "The result is unknown if no piece has this role, or if the release is a clamp. It is also "
+        "unknown if the name of the release is that of a shackle, swivel, rope or similar part. "
+        "There is a failure if no buoyancy is above the release. There is a warning if the release "
+        "is less than 1 m above the anchor, or if a float is below the release. There is also a "
+        "warning for a single release in more than 100 m of water. A name or label with a word "
+        "such as dual, twin or pair counts as two releases",
         "CALM's own rule: a line that will be recovered needs a release",
         _ONCE),
     "hardware": RuleText("Hardware", "",
@@ -303,8 +303,8 @@ RULES = {
         "or loss of a float",
         "The net buoyancy must be at least `backup_margin` (0.1) times the weight lifted, and at "
         "least the drag at `minimum_rise_speed`. There is a warning for a surface mooring without "
-        "floats below its buoy. A line that is lifted by a single float at most 50 m above "
-        "the release is not judged; this is CALM's own rule",
+        "floats below its buoy. A line with a single float, at most 50 m above the release, is not "
+        "judged; this exception is CALM's own",
         "URI GSO mooring program: if any one link breaks, everything above the release still "
         "floats; CALM itself sets the margin",
         _ONCE),

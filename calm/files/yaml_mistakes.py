@@ -16,7 +16,7 @@ _OPENING = {"mapping": "{", "sequence": "["}
 
 
 def without_colon(text: str) -> str:
-    """Return the message about a key without a colon, or without a space after the colon."""
+    """Return the message for a line in which the colon, or the space after it, is missing."""
     key, colon, value = text.partition(":") if ":" in text else text.partition(" ")
     lacking = "space after its colon" if colon == ":" else "colon"
     meant = f"{shown(key)}: {shown(value)}".strip()

@@ -76,8 +76,8 @@ def grid_layout(
 ) -> netcdf.ResultLayout:
     """Return the layout of a gridded file.
 
-    `inputs` are names and hashes of the input files, `names` the variables by quantity, and
-    `averaged` the averaging interval as text.
+    `inputs` are names and hashes of the input files. `names` are the names of the variables, by
+    quantity. `averaged` is the averaging interval as text.
     """
     time = next(iter(fields.values())).samples.time
     title = str(depths.attributes.get("title", "mooring")).partition(": ")[0]

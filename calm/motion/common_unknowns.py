@@ -198,8 +198,8 @@ def chance_of(code: int, times: int) -> tuple[float, float]:
 def step_times(law: LinearLaw, covariance: Floats, columns: Sequence[Floats]) -> list[int]:
     """Return the most likely start of each possible step in the readings, as the index of a time.
 
-    A step lasts to the end of the record. The start has at least `FEWEST` affected times before
-    and after it; otherwise, the index is 0.
+    A step lasts to the end of the record. At least `FEWEST` times with readings of the affected
+    sensors lie before the start, and as many after it; otherwise, the index is 0.
 
     Parameters
     ----------

@@ -197,9 +197,10 @@ def counts_across(sea: Sea, k: int, off: float, length: float, share: float) -> 
 
 
 def find_bends(intervals: Sequence[Interval], bends: MutableSequence[float]) -> None:
-    """Compute the relative change of the slopes of current and density at each level [1/m].
+    """Compute the change of the slopes of current and density at each level.
 
-    Interval k begins at level k. The output `bends` has one value for each level from -inf to inf.
+    The change is relative to the current and the density at the level [1/m]. Interval k begins at
+    level k; the first and the last level are at -inf and inf. `bends` receives one value per level.
     """
     bends[0] = 0.0
     for k in range(1, len(intervals)):

@@ -61,8 +61,8 @@ def griffin_skop(damping: float, mode: float = CABLE_MODE) -> float:
     damping : reduced damping S_G [-]
     mode : mode factor γ [-]
 
-    Source: Griffin, Skop & Ramberg (1975), Offshore Technology Conference, paper 2319, for the
-    double amplitude (1.29 γ).
+    Source: Griffin, Skop & Ramberg (1975), Offshore Technology Conference, paper 2319. The
+    paper gives the double amplitude, with the factor 1.29 γ.
     """
     return 0.645 * mode * pow(1.0 + 0.43 * damping, -3.35)
 

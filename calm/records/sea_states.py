@@ -277,8 +277,8 @@ def _most_probable(height: float) -> SeaState:
 def measured_spectrum(path: Path) -> SeaState:
     """Read a measured spectrum from CSV, ``frequency[Hz],density[m^2/Hz]``, or from NetCDF.
 
-    NetCDF files of NDBC and WAVEWATCH III are supported. Of several times, the highest sea is used.
-    Raise InputError if the spectrum is invalid.
+    NetCDF files of NDBC and WAVEWATCH III are supported. If the file has several times, the
+    spectrum with the highest waves is used. Raise InputError if the spectrum is invalid.
     """
     if holds_arrays(path):
         return _sea_of(path, *_spectral_arrays(path))

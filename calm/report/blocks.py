@@ -365,10 +365,7 @@ def number(heading: str, show: Shown = "", unit: str = "", **more: Any) -> Field
 
 
 def of_first(*fields: Field) -> list[Field]:
-    """Adapt fields for items to rows that are tuples.
-
-    The first member of each tuple is the item.
-    """
+    """Return the fields for rows that are tuples; each field shows the first member."""
 
     def first(show: Callable[[Any], Any]) -> Callable[[Any], Any]:
         return lambda row: show(row[0])

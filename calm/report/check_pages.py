@@ -329,7 +329,7 @@ def _inventory_table(signed: SignedMooring) -> Table:
 
 
 def basis_page(signed: SignedMooring, page_size: str = "a4") -> Iterator[Block]:
-    """Yield limits, the hash of all inputs, environments, exclusions and the mooring file."""
+    """Yield the blocks of the last page: limits, hash of the inputs, environments, mooring file."""
     assessment = signed.assessment
     waters = {
         one.leg.file.environment.name or DEFAULT_ENVIRONMENT: one.leg.water

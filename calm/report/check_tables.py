@@ -95,8 +95,8 @@ GRAVE = (State.FAIL, State.UNKNOWN, State.WARN)
 def counted_as(finding: Finding) -> tuple[Hashable, ...]:
     """Return the key by which `counted_states` groups findings.
 
-    Findings of a rule on equal pieces from one row of the file have the same key if their state is
-    in `GRAVE`.
+    Equal pieces from one row of the file share a key for each rule. This applies only to findings
+    with a state in `GRAVE`.
     """
     place = finding.place
     if finding.missing is not None or place is None or finding.state not in GRAVE:

@@ -249,8 +249,7 @@ def degrees_text(degrees: float, sides: str, digits: int) -> str:
 def inputs_part(inputs: Sequence[tuple[str, MooringFile, Water]]) -> ReportPart:
     """Report the inputs: environments, mooring file, currents, hash and versions.
 
-    Each of `inputs` is the name of an environment, the mooring file, and the water in this
-    environment.
+    `inputs` has one tuple for each environment: name, mooring file, and water.
     """
     files = [file for _, file, _ in inputs]
     waters = list({name: water for name, _, water in reversed(inputs)}.items())[::-1]

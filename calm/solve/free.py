@@ -142,7 +142,7 @@ def looped(
     ----------
     piece, rise : (k,) piece of every element, and height of the element's second end above its
         first end [m]
-    pushed : (n,) whether a piece has no length and is compressed, and so belongs to a loop
+    pushed : (n,) whether a piece of zero length is compressed; such a piece belongs to a loop
     """
     up = np.zeros(len(line.length))
     np.add.at(up, piece, np.maximum(rise, 0.0))

@@ -153,7 +153,7 @@ class NetSearch:
             ending, found = self.do(leg_closing.SETTLE, x, how, enough)
             if ending == FOUND:
                 return found
-        raise unsettled("its legs do not meet to full precision")
+        raise unsettled("the ends of its legs do not coincide to full precision")
 
     def end(self, i: int, x: Floats) -> Floats:
         """Return the position [m] at which the march of a leg must end."""
@@ -339,7 +339,7 @@ class NearbyNet:
         _, x = net.do(leg_closing.MARCH, roughly_closed(net, near), chosen)
         ending, self._x = net.do(leg_closing.CLOSE, x, self._how, leg_closing.CLOSED)
         if ending != FOUND:
-            raise unsettled("its legs do not meet to full precision")
+            raise unsettled("the ends of its legs do not coincide to full precision")
         net.do(leg_closing.SLOPES, self._x, self._how)
         self._slopes = np.array(net.net.slopes)
         net.do(leg_closing.MARCH, self._x, self._how)

@@ -166,7 +166,7 @@ class Field(Horizontal):
             self._show_note(self._note)
 
     def note(self, reading: Reading) -> str:
-        """Return the error or the meaning of the typed text, or else the note of the field."""
+        """Return the feedback on the typed text; without feedback, the note of the field."""
         return reading.feedback(self.input.value) or self._note
 
     def _tell(self, reading: Reading) -> None:

@@ -166,8 +166,8 @@ def serial_of_equipment(text: str) -> Reading:
 def entry_text(draft: Draft, rows: Location, called: tuple[str, str], key: str) -> str:
     """Return the text of a key in one entry of a list in the file.
 
-    `rows` is the path of the list. `called` identifies the entry by one of its keys and the text of
-    this key. Without such an entry, the result is "".
+    `rows` is the path of the list. `called` is a key and the text that this key has in the entry.
+    Without such an entry, the result is "".
     """
     index = _index(draft, rows, called)
     return "" if index is None else draft.text_at((*rows, index, key))

@@ -104,7 +104,7 @@ class Page:
         items = items_of(self.text, node)
         if items is None:
             message = f"line {node.line} of the file: this list or mapping shares lines with other"
-            raise EditError(f"{message} items or comments; change it in the text")
+            raise EditError(f"{message} items or comments; edit the list in the text of the file")
         return items
 
     def known(self, location: Location, indices: Iterable[int]) -> list[int]:

@@ -98,9 +98,9 @@ class Draft:
 
     @cached_property
     def lists(self) -> LineLists:
-        """Locations of the lists of line items: one list, or one list for each leg.
+        """Locations of the lists of line items: one list for a line, or one for each leg of a net.
 
-        The index of an item in the line is counted through all legs.
+        Indices of items continue from one leg to the next.
         """
         return LineLists.of(self._root.data if self._root is not None else None)
 

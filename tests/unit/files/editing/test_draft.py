@@ -314,7 +314,7 @@ def test_comments_between_items_in_brackets_are_not_lost() -> None:
     draft = Draft("line: [\n  {use: a},   # one\n  {use: c}\n]\n")
     for change in (lambda: draft.delete([1]), lambda: draft.insert(0, {"use": "x"})):
         with pytest.raises(
-            EditError, match=r"line 1 of the file: .* items or comments; change it in the text"
+            EditError, match=r"line 1 of the file: .* items or comments; edit the list in the text"
         ):
             change()
     assert draft.put(0, "use", "b").text == draft.text.replace("use: a", "use: b")

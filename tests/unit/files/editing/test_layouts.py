@@ -173,7 +173,7 @@ def test_a_value_is_changed_and_nothing_else(name: str) -> None:
 def test_what_is_put_in_and_taken_out_leaves_nothing_behind(name: str) -> None:
     draft = Draft(LAYOUTS[name])
     if name in KEPT_AS_TEXT:
-        with pytest.raises(EditError, match="comments; change it in the text"):
+        with pytest.raises(EditError, match="comments; edit the list in the text"):
             list(edits(draft))
         return
     for edit, after in edits(draft):
@@ -184,7 +184,7 @@ def test_what_is_put_in_and_taken_out_leaves_nothing_behind(name: str) -> None:
 def test_what_is_taken_out_leaves_all_else(name: str) -> None:
     draft = Draft(LAYOUTS[name])
     if name in KEPT_AS_TEXT:
-        with pytest.raises(EditError, match="comments; change it in the text"):
+        with pytest.raises(EditError, match="comments; edit the list in the text"):
             draft.delete([0])
         return
     after = draft.delete([0])
