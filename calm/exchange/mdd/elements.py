@@ -40,8 +40,8 @@ def piece_of(element: MddElement) -> model.ImportedPiece:
 def rigid(element: MddElement) -> model.ImportedComponent:
     """Convert a rigid or clamped element to a component.
 
-    As in Mooring Design & Dynamics, an element with a diameter becomes a sphere, whatever its length.
-    An element with only a width becomes a cylinder without drag on the end faces.
+    As in Mooring Design & Dynamics, an element with a diameter becomes a sphere, whatever its
+    length. An element with only a width becomes a cylinder without drag on the end faces.
     """
     lift = element.lift * KILOGRAM_FORCE
     role = role_of(element.name, lift, fastener=element.is_fastener)
