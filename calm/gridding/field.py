@@ -75,10 +75,7 @@ class GriddedQuantity:
 
 
 class LevelPosterior(NamedTuple):
-    """Posterior of a quantity at levels: mean, standard deviation and remaining variance.
-
-    `left` is the remaining variance as a share of the prior variance.
-    """
+    """Posterior mean and standard deviation at levels, and the remaining share of the variance."""
 
     mean: Floats
     deviation: Floats
@@ -139,11 +136,7 @@ def spacing(samples: Samples) -> float:
 
 
 def _local_line(weight: Floats, off: Floats, value: Floats, width: float) -> tuple[Floats, Floats]:
-    """Fit straight lines to `value` against `off`, and return their values at 0 and their slopes.
-
-    The last axis has the points of each line. `off` are distances in depth, and `weight` are the
-    weights of the points. If the depths are too close relative to `width`, the slope is 0.
-    """
+    """Fit weighted straight lines along the last axis; return their values at 0 and slopes."""
     total = np.maximum(weight.sum(axis=-1), 1e-300)
     centre = (weight * off).sum(axis=-1) / total
     mean = (weight * value).sum(axis=-1) / total
@@ -194,10 +187,7 @@ def _block(field: GriddedQuantity, times: NDArray[np.int64]) -> _Block:
 
 
 def _slopes(samples: Samples, times: NDArray[np.int64], at: Floats) -> tuple[Floats, Floats]:
-    """Estimate vertical gradients and depth errors [m] at given depths, from nearby sensors.
-
-    The depths `at` and both results are (n, k), for the n time indices `times`.
-    """
+    """Estimate gradients and depth errors [m] at depths `at` (n, k), from nearby sensors."""
     depth, value, error = (
         table[times][:, None, :] for table in (samples.depth, samples.value, samples.deviation)
     )
@@ -328,11 +318,7 @@ MIN_RESIDUALS = 20  # minimum number of residuals from which a factor is estimat
 
 
 def _beyond(field: GriddedQuantity, times: NDArray[np.int64]) -> float:
-    """Return the factor that widens the 95 % bands beyond the outermost sensors.
-
-    With this factor, the bands contain 95 % of the values that are predicted for the uppermost and
-    the lowest sensor from the other sensors. The factor is at least 1.
-    """
+    """Return the factor with which bands beyond the outermost sensors hold 95 % of predictions."""
     residual, spread = left_out(field, times)
     place = np.where(np.isfinite(residual), field.samples.depth[times], np.nan)
     upper, lower = (f.reduce(place, axis=1)[:, None] for f in (np.fmin, np.fmax))

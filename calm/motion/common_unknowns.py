@@ -73,11 +73,7 @@ def common_beforehand(
 
 
 def fixed_slopes(common: Floats) -> Floats:
-    """Return the derivatives (n, s, q) of the readings with respect to the common unknowns.
-
-    `common` (n, s, f) are the derivatives with respect to the factors. The derivatives with respect
-    to the datum and the offsets, which are 0 or 1, are appended.
-    """
+    """Return the derivatives (n, s, q) by all common unknowns, from those by factors (n, s, f)."""
     n, s, _ = common.shape
     offsets = np.broadcast_to(np.eye(s), (n, s, s))
     return np.concatenate([common, np.ones((n, s, 1)), offsets], axis=2)
@@ -86,10 +82,8 @@ def fixed_slopes(common: Floats) -> Floats:
 def fall(depth: Floats, still: Floats, point: Integers) -> Floats:
     """Return the increase (n, s) in the depth of each sensor per metre of slip down the line.
 
-    Parameters
-    ----------
-    depth, still : depths (n, p) of the points, and depths (p,) in still water [m]
-    point : (s,) indices of the points with sensors
+    `depth` (n, p) and `still` (p,) are depths of points [m], `point` (s,) the points of the
+    sensors.
     """
     result = np.zeros((len(depth), len(point)))
     for j, one in enumerate(point.tolist()):
@@ -107,10 +101,7 @@ LONGEST_MEMORY = 25  # maximum number of times over which the error correlation 
 
 
 def repeated(pull: Floats) -> float:
-    """Return the number of successive times that share an error.
-
-    The number is the integral time scale of the series `pull`, in time steps.
-    """
+    """Return the number of successive times that share an error, for a series `pull`."""
     one = pull - pull.mean()
     whole = float(one @ one)
     total, chance = 1.0, 2.0 / np.sqrt(max(len(one), 1))
@@ -154,10 +145,7 @@ class LinearLaw:
         return np.asarray((ROBUST + self.known.sum(axis=1)) / (ROBUST + misfit))
 
     def pulls(self, seen: Floats, left: Floats) -> Floats:
-        """Return the gradient (n, q) of the log-likelihood at each time.
-
-        `seen` (n, s, q) are the derivatives of the readings, and `left` (n, s) the residuals.
-        """
+        """Return log-likelihood gradients (n, q) for derivatives (n, s, q) and residuals (n, s)."""
         return np.asarray(np.einsum("n,nsq,nst,nt->nq", self.weight, seen, self.inverse, left))
 
     def normal(self, seen: Floats) -> Floats:
@@ -173,12 +161,8 @@ RAMPS: Mapping[int, float] = {-2: 1.0, -3: 0.3}  # duration of each drift, as a 
 def moved_by(code: int, fall: Floats, share: Floats) -> Floats:
     """Return the change (n,) in the readings of a sensor due to a fault of 1 m.
 
-    `fall` and `share` (n,) are as in `LinearLaw`. `code` gives the kind of the fault:
-
-    - 0: offset;
-    - `MISHUNG`: wrong position on the line;
-    - a key of `RAMPS`: drift;
-    - another number: slip, where the number is the index of the time of the slip.
+    `fall` and `share` (n,) are as in `LinearLaw`. `code` is 0 for an offset, `MISHUNG` for a wrong
+    position on the line, a key of `RAMPS` for a drift, or the time index of a slip.
     """
     if code in RAMPS:
         return np.minimum(share / RAMPS[code], 1.0)
@@ -186,10 +170,7 @@ def moved_by(code: int, fall: Floats, share: Floats) -> Floats:
 
 
 def chance_of(code: int, times: int) -> tuple[float, float]:
-    """Return the log prior probability of a fault, and the prior deviation of its size [m].
-
-    `code` is as in `moved_by`.
-    """
+    """Return the log prior probability of the fault `code`, and the deviation of its size [m]."""
     if code in RAMPS:
         return float(np.log(DRIFTS / len(RAMPS))), DRIFT
     return float(np.log(SLIPPED / times if code > 0 else MISPLACED / 2.0)), ELSEWHERE

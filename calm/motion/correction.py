@@ -290,10 +290,7 @@ class MeasuredRecord(Record):
         self.time, self.source, self.notes = measured.time, dict(source), tuple(notes)
 
     def profiles(self, start: int, stop: int) -> Levels:
-        """Return depths and currents of the levels, in the form of `Record.profiles`.
-
-        The depth of a level that moves with the line is NaN.
-        """
+        """Return the levels as `Record.profiles` does; depths of levels on the line are NaN."""
         one = self._measured.at(slice(start, stop))
         return one.level_depth, one.u, one.v, None
 

@@ -51,9 +51,6 @@ class SpeedLaw:
     kept: Linear | None = None
 
     def read(self, level: Floats) -> ReadCurrents:
-        """Return eastward currents with the median speeds of the distribution.
-
-        `level` (n, k) are the depths of the knots [m].
-        """
+        """Return eastward currents with the median speeds, at the levels (n, k) [m]."""
         u = np.tile(np.exp(self.mean), (len(level), 1))
         return ReadCurrents(level, u, np.zeros_like(u))

@@ -298,11 +298,7 @@ class Diagnosis:
         return float(((ROBUST + count) * np.log1p(misfit / ROBUST)).sum())
 
     def _late(self, taken: list[Suspect], left: Floats, mine: NDArray[np.bool_]) -> Suspect:
-        """Find the most likely clock error of the sensors in the mask `mine`.
-
-        All these sensors have the same error. `taken` are the faults already accepted, and `left`
-        are the residuals [m].
-        """
+        """Find the most likely clock error that the sensors in the mask `mine` have in common."""
         reach, step = int(FURTHEST / self.step) if self.step > 0.0 else 0, self.step
 
         def miss(late: float) -> float:

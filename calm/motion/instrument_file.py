@@ -110,11 +110,7 @@ def _read(path: Path, seabed: float) -> Instruments:
 def _who(
     dataset: Dataset, time: str, seabed: float, path: Path
 ) -> tuple[str | None, tuple[Identity, ...]]:
-    """Return the instrument dimension of a file, and the identity of each instrument.
-
-    The dimension is None for a file of a single instrument. An identity is a label, a serial number
-    and a nominal depth.
-    """
+    """Return the instrument dimension, None for one instrument, and each instrument's identity."""
     others = [str(dim) for dim in dataset.sizes if dim != time]
     for dim in sorted(others, key=lambda dim: cf_files.labels_along(dataset, dim) is None):
         if dataset.sizes[dim] > 1 or cf_files.labels_along(dataset, dim) is not None:
@@ -152,13 +148,9 @@ def write_depths(
 ) -> list[str]:
     """Write a copy of an instrument file with depths, standard deviations and flags added.
 
-    Return the names of the instruments without depths, because they match no point of the line.
-
-    Parameters
-    ----------
-    result : dataset of `calm motion`
-    gap : longest gap over which depths are interpolated
-    inputs : names and hashes of the source files, for the history
+    Return the names of the instruments that match no point of the line. `result` is a dataset of
+    `calm motion`. Depths are interpolated over gaps of at most `gap`. `inputs` are names and hashes
+    of the source files, for the history.
     """
     import xarray as xr
 

@@ -29,18 +29,12 @@ class LineResponse:
         self.measured, self.forward, self.shifted = measured, forward, shifted
 
     def depths(self, read: ReadCurrents, logs: Floats, forward: Forward | None = None) -> Floats:
-        """Return the depths (n, p) of the points [m] in the currents `read`, multiplied by factors.
-
-        The factors are exp(`logs`) (n, k). If `forward` is given, it replaces `self.forward`.
-        """
+        """Return depths (n, p) [m] in currents multiplied by the factors exp(`logs`) (n, k)."""
         factor = np.exp(logs)
         return (forward or self.forward).depths(read.level, read.u * factor, read.v * factor)
 
     def linear(self, read: ReadCurrents, logs: Floats) -> Linear:
-        """Return the depths, and their derivatives, in the currents multiplied by exp(`logs`).
-
-        `logs` is (n, k). The derivatives are by `logs` and by the logarithms of the common factors.
-        """
+        """Return depths and derivatives in currents multiplied by exp(`logs`) (n, k)."""
         factor = np.exp(logs)
         u, v = read.u * factor, read.v * factor
         there, slopes = self.forward.slopes(read.level, u, v)
@@ -51,10 +45,7 @@ class LineResponse:
 
 
 def _slopes(ahead: Sequence[Floats], there: Floats) -> Floats:
-    """Return the derivatives (n, p, m) of the depths `there` with respect to m unknowns.
-
-    `ahead` has the depths (n, p) after a step in each of these unknowns.
-    """
+    """Return derivatives (n, p, m) from the depths after a step in each of m unknowns, `ahead`."""
     columns = [(one - there) / STEP for one in ahead]
     return np.nan_to_num(np.stack(columns, -1)) if columns else np.zeros((*there.shape, 0))
 

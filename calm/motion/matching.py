@@ -146,14 +146,9 @@ def matched_by_place(
 ) -> tuple[dict[int, int], list[str]]:
     """Match sensors to instruments by nominal depth, in order down the line.
 
-    `places` are the indices of the points that are instruments. Return the index of the point for
-    each sensor index, and notes.
-
-    Raises
-    ------
-    UsageError
-        A nominal depth is missing, there are more sensors than instruments, or the match is
-        ambiguous.
+    `places` are the points that are instruments. Return the point for each sensor index, and notes.
+    Raise UsageError if a nominal depth is missing, if there are more sensors than instruments, or
+    if the match is ambiguous.
     """
     lacking = [one.named for one in given if not np.isfinite(one.nominal)]
     if lacking:
@@ -179,12 +174,8 @@ def points_of(series: Sequence[Identity], line: LinePlaces) -> tuple[dict[int, i
     """Match series to points by label, serial number or nominal depth.
 
     A series without a label or a matching serial number is matched by nominal depth, in order down
-    the line. Return the index of the point for each index of a matched series, and notes.
-
-    Raises
-    ------
-    UsageError
-        No series matches a point, or the match by nominal depth is ambiguous.
+    the line. Return the point for each index of a matched series, and notes. Raise UsageError if no
+    series matches a point, or if the match by nominal depth is ambiguous.
     """
     who = [(one.label, one.serial, one.nominal, one.source) for one in series]
     first = [who.index(one) for one in who]  # the bins of a profiler are one instrument
@@ -251,18 +242,13 @@ def in_order(
     """Match series to points by nominal depth, in order down the line.
 
     Return the index of the point for each index of a matched series, and the indices of unmatched
-    series. Series are unmatched only if there are more series than points.
+    series. Series are unmatched only if there are more series than points. Raise UsageError unless
+    the second-best match costs at least `clear` more.
 
     Parameters
     ----------
     depths : cost of each metre between nominal depth and depth of the point
     spacings : cost of each metre between the nominal and the actual distance of two neighbours
-    clear : least difference in cost to the second-best match
-
-    Raises
-    ------
-    UsageError
-        The match is ambiguous.
     """
     down = sorted(points, key=lambda at: line.still[at])
     rows = sorted(range(len(series)), key=lambda i: series[i].nominal)

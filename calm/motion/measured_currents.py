@@ -90,10 +90,7 @@ FURTHEST = 0.7  # maximum logarithm of a factor
 
 @dataclass(frozen=True)
 class Knots:
-    """Depths at which the current is estimated, and weights for interpolation to the levels.
-
-    These depths are interpolation knots.
-    """
+    """Depths (knots) of the estimated current, and interpolation weights for the levels."""
 
     depth: Floats  # (K,) depths of the knots in still water, increasing [m]
     level: Floats  # (k, K) weights with which the knots contribute to the current at each level
@@ -283,22 +280,16 @@ class CurrentSmoother:
         return whole[:, :count], whole[:, count:]
 
     def depths(self, state: Floats, factor: Floats, times: NDArray[np.int64] | slice) -> Floats:
-        """Return depths (n, p) of the points [m], for currents and factors.
+        """Return depths (n, p) of the points [m], for n times with the indices `times`.
 
-        Parameters
-        ----------
-        state : (n, 2 K) currents at the knots, minus their mean [m/s]
-        factor : (f,) logarithms of the factors
-        times : indices of the n times
+        `state` (n, 2 K) are the currents at the knots, minus their mean [m/s]; `factor` (f,) are
+        the logarithms of the factors.
         """
         forward = self.forward(factor)
         return forward.depths(self.knot_depth[times], *self.currents(state))
 
     def forward(self, factor: Floats) -> Forward:
-        """Return the mooring with given factors on its line; recent moorings are cached.
-
-        `factor` (f,) are the logarithms of the factors.
-        """
+        """Return the mooring with factors of given logarithms (f,); recent moorings are cached."""
         key = tuple(factor.tolist())
         if key not in self._forwards:
             factors = dict(zip(self.names, np.exp(factor).tolist(), strict=True))
@@ -308,10 +299,7 @@ class CurrentSmoother:
         return self._forwards[key]
 
     def linear(self) -> Floats:
-        """Return the depths (n, p) of the points in the estimated currents [m].
-
-        If the currents or the factors have changed much, their derivatives are updated, too.
-        """
+        """Return depths (n, p) of the points [m], and update the derivatives where needed."""
         now, factor = self.state[:, self.columns.current], self.factor
         far = np.abs(now - self._slopes_at).max(axis=1) > STALE
         far |= (np.abs(factor - self._slopes_factor) > FACTOR_STEP).any()
@@ -330,11 +318,7 @@ class CurrentSmoother:
     def _with_slopes(
         self, state: Floats, factor: Floats, times: NDArray[np.int64]
     ) -> tuple[Floats, Floats]:
-        """Return depths (n, p), and their derivatives (n, p, 2 K + f).
-
-        The derivatives are with respect to the currents at the knots, and to the logarithms of the
-        factors.
-        """
+        """Return depths (n, p), and their derivatives (n, p, 2 K + f) by currents and factors."""
         flow = self.knot_depth[times], *self.currents(state)
         there, slopes = self.forward(factor).slopes(*flow)
         steps = FACTOR_STEP * np.eye(len(factor))
@@ -357,10 +341,7 @@ class CurrentSmoother:
         return edges, own, np.exp(-np.abs(middle[:, None] - middle) / span)
 
     def by_line(self, there: Floats) -> Floats:
-        """Return derivatives (n, p, z) of depths with respect to errors of z stretches of the line.
-
-        The errors are relative to the knockdown of each stretch.
-        """
+        """Return derivatives (n, p, z) of depths by the relative errors of z stretches of line."""
         edges, own, _ = self._stretches
         order = np.argsort(self.still, kind="stable")
         down = np.maximum(np.nan_to_num(there - self.still), 0.0)
@@ -377,10 +358,7 @@ class CurrentSmoother:
     # --- the law
 
     def meter_law(self) -> StateSpace:
-        """Return a state-space model of the currents at the knots, without the pressures.
-
-        The only readings of this model are those of the current meters.
-        """
+        """Return a state-space model of the currents at the knots that uses the meters alone."""
         one, both = self.measured, np.eye(2)
         apart = np.abs(self.knots.depth[:, None] - self.knots.depth)
         alike = np.exp(-apart / CURRENT_REACH) * np.outer(self.spread, self.spread)
@@ -490,10 +468,7 @@ class CurrentSmoother:
         return np.asarray(gone[:, :1] + gone[:, 1 + sensors :] * self.fall)
 
     def _place(self) -> None:
-        """Update the factors on the line by a Gauss-Newton step.
-
-        The currents in this step are estimated from the current meters alone.
-        """
+        """Update the factors on the line; the currents are those from the meters alone."""
         times = chosen_times(self.measured)
         if not self.names or not len(times):
             return
@@ -518,10 +493,7 @@ class CurrentSmoother:
         self.common_covariance[: len(drag), : len(drag)] += np.outer(drag, drag)
 
     def _heavy(self, square: Floats) -> Floats:
-        """Return initial variances of the unknowns with Student's t distributions.
-
-        `square` are the expected squares of these unknowns.
-        """
+        """Return initial variances of heavy-tailed unknowns from their expected squares."""
         wide = self.begin + self.tail * (square - self.begin)
         return np.asarray(np.maximum(self.begin, wide), np.float64)
 

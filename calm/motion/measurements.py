@@ -100,10 +100,7 @@ def level_names(measured: MooringMeasurements, labels: Sequence[str]) -> tuple[s
 
 
 def nearest(time: Times, wanted: Times) -> Integers:
-    """Return the index (n,) of the time nearest to each wanted time.
-
-    If two times are equally near, the earlier time is chosen.
-    """
+    """Return the index (n,) of the time nearest to each wanted time; the earlier one in a tie."""
     after = np.clip(np.searchsorted(time, wanted), 0, len(time) - 1)
     before = np.maximum(after - 1, 0)
     earlier = np.abs(wanted - time[before]) <= np.abs(time[after] - wanted)
@@ -227,17 +224,10 @@ def joined(
 ) -> MooringMeasurements:
     """Combine all measurements on common times, with levels and sensors from the top down.
 
-    Parameters
-    ----------
-    points : points of the sensors
-    labels, still : labels, and depths in still water [m], of all points
-    gap : longest gap over which values are interpolated
-    sea_level : times, and heights above any datum [m]
-
-    Raises
-    ------
-    UsageError
-        A label is not on the line, or the records do not overlap.
+    `points` are the points of the sensors; `labels` and `still` are labels and depths in still
+    water [m] of all points. Values are interpolated over gaps of at most `gap`. `sea_level` has
+    times, and heights above any datum [m]. Raise UsageError if a label is not on the line, or if
+    the records do not overlap.
     """
     time = common_times(currents, sensors)
     order = np.argsort([still[point] for point in points], kind="stable")
@@ -289,11 +279,7 @@ def joined(
 
 
 def _worse_flags(one: CurrentMeasurements, k: int, time: Times) -> NDArray[np.int8]:
-    """Return a quality flag of level k at each time of `time`.
-
-    The flag is the worse of the two flags at the nearest earlier and later times of the record. It
-    is 9 outside the record.
-    """
+    """Return the worse flag of the two nearest readings at level k; 9 outside the record."""
     after = np.searchsorted(one.time, time)
     upper, lower = np.minimum(after, len(one.time) - 1), np.maximum(after - 1, 0)
     exact = one.time[upper] == time

@@ -51,11 +51,7 @@ class Fault:
 
     @property
     def size(self) -> float:
-        """Size of the fault, on a scale where 0 means that there is no fault.
-
-        The size of a gain is `value` minus 1. The size of a kind in `OF_LINE` is the logarithm of
-        `value`. For other kinds, the size is `value`.
-        """
+        """Size of the fault: 0 without a fault; for `OF_LINE`, the logarithm of `value`."""
         if self.kind in OF_LINE:
             return float(np.log(self.value))
         return self.value - (self.kind == "gain")
@@ -142,10 +138,7 @@ class Fault:
 
 
 def false_current_times(names: Sequence[str], time: Times, doubt: Floats) -> dict[str, Times]:
-    """Return the times at which the current at a level is probably false, by name of the level.
-
-    `doubt` (n, k) is the probability that a reading is false.
-    """
+    """Return the times of probably false currents by level name, from `doubt` (n, k)."""
     hit = doubt > FALSE
     return {name: time[hit[:, k]] for k, name in enumerate(names) if hit[:, k].any()}
 
@@ -180,10 +173,7 @@ def alone_remarks(common: Common) -> list[str]:
 
 
 def datum_remarks(common: Common, seabed: float) -> list[str]:
-    """Return a remark if all sensors have a common offset that is too large.
-
-    The limit is a share of the water depth `seabed` [m], and at most `FAR_DATUM`.
-    """
+    """Return a remark if all sensors share an offset that is large for the water depth [m]."""
     if abs(common.datum) <= min(FAR_OFFSET * common_unknowns.DATUM * seabed, FAR_DATUM):
         return []
     return [
@@ -264,13 +254,9 @@ def coverage(off: Floats, deviation: Floats) -> float:
 def linear(depth: Floats, point: Integers, still: Floats, wanted: int) -> Floats:
     """Interpolate depths (n,) of a point [m] linearly between the nearest sensors.
 
-    Depths are extrapolated beyond the outermost sensors. A single sensor moves all points equally.
-
-    Parameters
-    ----------
-    depth, point : depths (n, s) of the sensors [m], and their points (s,)
-    still : (p,) depths of all points in still water [m]
-    wanted : index of the point
+    The sensors at the points (s,) have depths (n, s) [m]; `still` (p,) are depths of all points in
+    still water [m]. Depths are extrapolated beyond the outermost sensors. A single sensor moves all
+    points equally.
     """
     from scipy.interpolate import make_interp_spline
 

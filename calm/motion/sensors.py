@@ -42,14 +42,9 @@ def read_sensors(
 ) -> list[InstrumentSeries]:
     """Read the depths measured by the sensors of several files [m].
 
-    Files are given as paths, or ``LABEL=PATH`` for a single sensor. Pressures are converted by
-    TEOS-10.
-
-    Parameters
-    ----------
-    flags : accepted quality flags
-    latitude : latitude of the mooring [degrees]
-    seabed : depth of the water, from which nominal heights are measured [m]
+    Files are given as paths, or ``LABEL=PATH`` for a single sensor. Pressures with accepted flags
+    are converted by TEOS-10 at `latitude` [degrees]. Nominal heights are measured from `seabed`
+    [m].
     """
     found: list[InstrumentSeries] = []
     for label, path in instrument_series.files_given(given):
@@ -117,10 +112,7 @@ def _from_arrays(
 
 
 def _find(dataset: xr.Dataset) -> tuple[str, bool]:
-    """Return the name of the pressure variable, or of a depth variable if there is no pressure.
-
-    Also return whether the variable is a pressure.
-    """
+    """Find the pressure variable, or else a depth variable; the flag is true for a pressure."""
     if found := instrument_series.named(dataset, *instrument_series.PRESSURE):
         return found[0], True
     for name in map(str, dataset.cf.standard_names.get("depth", [])):
@@ -218,11 +210,8 @@ def plausible(
 ) -> tuple[InstrumentSeries, list[str]]:
     """Remove implausible readings from a sensor, and return notes about the removal.
 
-    These readings are implausible:
-
-    - readings far shallower than `place`, the depth of the sensor in still water [m];
-    - readings far below the seabed, whose depth is `seabed` [m];
-    - readings of a stuck sensor.
+    Implausible readings are far shallower than `place`, the depth of the sensor in still water [m],
+    far below the seabed at the depth `seabed` [m], or from a stuck sensor.
 
     If most readings are too shallow or too deep, all are kept. If readings on deck show that
     pressures are absolute, they are corrected. Of several readings at one time, the first is kept.
@@ -352,13 +341,8 @@ def metre_notes(measured: Floats, expected: Floats, latitude: float) -> list[str
 def unusable(labels: Sequence[str], depth: Floats, place: Floats) -> dict[str, str]:
     """Return the reason for each label of an unusable sensor.
 
-    `depth` (n, s) are measured depths, and `place` (s,) depths in still water [m].
-
-    Raises
-    ------
-    UsageError
-        Two labels are exchanged, or at least half of the sensors are far from their places on the
-        line.
+    `depth` (n, s) are measured depths, and `place` (s,) depths in still water [m]. Raise UsageError
+    if two labels are exchanged, or if at least half of the sensors are far from their places.
     """
     reasons: dict[str, str] = {}
     far_off: dict[str, str] = {}
@@ -404,11 +388,7 @@ def _exchanged(labels: Sequence[str], least: Floats, place: Floats) -> list[str]
 
 
 def _other_unit(least: Floats, place: Floats) -> str:
-    """Return a confusion of units that explains all depths, such as "psi for dbar?".
-
-    `least` are the smallest measured depths, and `place` the depths in still water [m]. The result
-    is empty if no confusion explains all depths.
-    """
+    """Return a confusion of units that explains all depths, such as "psi for dbar?", or ""."""
     known = np.isfinite(least)
     for unit, ratio in UNITS.items():
         meant = ratio * place[known]

@@ -68,10 +68,7 @@ class Smoothed:
 def _filter(
     law: StateSpace, start: int, stop: int, mean: Floats, spread: Floats
 ) -> Iterator[_Filtered]:
-    """Yield the filter result at each time from `start` to `stop`.
-
-    `mean` and `spread` are the mean and the covariance of the state that are predicted for `start`.
-    """
+    """Yield the filter result at each time; `mean` and `spread` are predictions for `start`."""
     for time in range(start, stop):
         if time > start:
             fade = law.fade[time]

@@ -228,10 +228,7 @@ def judged(
 
 
 def knockdown(used: MooringMeasurements) -> Floats:
-    """Return the knockdown (n,) at each time, from the highest sensor with a reading [m].
-
-    The knockdown of a sensor is measured from its smallest depth in the record.
-    """
+    """Return the knockdown (n,) of the highest sensor with a reading, from its least depth [m]."""
     down = np.full(len(used.time), np.nan)
     for j in range(len(used.label)):
         depth = used.depth[:, j]

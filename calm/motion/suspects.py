@@ -45,12 +45,9 @@ class Suspect:
 def line_suspects(task: Task, read: ReadCurrents, at: Linear, share: Floats) -> Iterator[Suspect]:
     """Yield possible faults of the line and its measured currents.
 
-    Parameters
-    ----------
-    read : currents at several times
-    at : linear model of the depths of the line in these currents. The state of the model is the
-        logarithm of a factor on all speeds
-    share : elapsed share of the record, at each of these times with an equilibrium of the line
+    `at` is a linear model of the line in the currents `read` at several times; its state is the
+    logarithm of a factor on all speeds. `share` is the elapsed share of the record at each of these
+    times with an equilibrium.
     """
     factors = task.common.factors
     good = np.isfinite(at.depth).all(axis=1)
@@ -159,11 +156,8 @@ def torn(
     """Remove readings that differ in depth by more than the length of line between the sensors.
 
     Of two such readings, the one farther from the median of its sensor is removed. A sensor that
-    would lose half of its readings keeps all. Sensors in `hidden` are ignored. Also return notes.
-
-    Parameters
-    ----------
-    distance : (p,) distance of the points from the top, along the line [m]
+    would lose half of its readings keeps all. Sensors in `hidden` are ignored. `distance` (p,) is
+    the distance of the points from the top along the line [m]. Also return notes.
     """
     depth, place = measured.depth, distance[measured.point]
     used = [i for i, label in enumerate(measured.label) if label not in hidden]

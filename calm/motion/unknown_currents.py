@@ -166,12 +166,7 @@ def learn_currents(
     """Estimate the distribution of the current speeds jointly with the common unknowns.
 
     The levels of `measured` are interpolation knots, `names` are the factors to estimate, and
-    `tell` receives progress messages.
-
-    Raises
-    ------
-    UsageError
-        No equilibrium of the line fits the pressures.
+    `tell` receives progress messages. Raise UsageError if no equilibrium fits the pressures.
     """
     part = measured.at(_chosen(measured))
     mean, covariance = assumed_law(part)
@@ -240,10 +235,7 @@ def raised(mooring: Design, measured: MooringMeasurements) -> float:
 
 @dataclass(frozen=True)
 class _Fit:
-    """Posterior of the currents at the times used for learning.
-
-    The prior is one trial distribution of the speeds, `law`.
-    """
+    """Posterior of the currents at the times used for learning, with one trial prior, `law`."""
 
     moments: LineResponse
     common: Common
@@ -300,10 +292,7 @@ def _chosen(measured: MooringMeasurements) -> Integers:
 
 
 def _worst(fit: _Fit, at: Linear, common: Common, used: Integers) -> Common:
-    """Return `common` with a new estimate of `worst`, the relative error of the line.
-
-    The estimate is the root mean square of trial values, weighted by their posterior probability.
-    """
+    """Estimate the relative error of the line: root mean square of trial values by probability."""
     now, log = fit.posterior(at), []
     white = np.linalg.solve(np.linalg.cholesky(now.expected), now.innovation[:, :, None])
     alike = max(repeated(column) for column in white[:, :, 0].T)
@@ -317,11 +306,7 @@ def _worst(fit: _Fit, at: Linear, common: Common, used: Integers) -> Common:
 
 
 def _placed(begun: Common, known: Common, fit: _Fit, at: Linear, found: Posterior) -> Common:
-    """Improve the factors, the datum and the offsets by a Gauss-Newton step.
-
-    Return `known` with the new values and their covariance. `begun` is the prior of the values, and
-    `found` the posterior of the currents.
-    """
+    """Return factors, datum and offsets after a Gauss-Newton step, and their covariance."""
     seen = fixed_slopes(at.common[:, fit.moments.measured.point])
     inverse = np.linalg.inv(found.expected)
     pulls = np.einsum("nsq,nst,nt->nq", seen, inverse, found.innovation)
@@ -335,11 +320,7 @@ def _placed(begun: Common, known: Common, fit: _Fit, at: Linear, found: Posterio
 
 
 def unknown_state(moments: LineResponse, common: Common) -> CurrentsState:
-    """Find the most likely currents at each time.
-
-    The iteration at a time starts from a stored model of the line: the model with the sensor depths
-    nearest to the measured depths.
-    """
+    """Find the most likely currents at each time, starting from the nearest stored model."""
     law, one = common.law, moments.measured
     assert law is not None and law.kept is not None
     read, kept, still = law.read(one.level_depth), law.kept, moments.forward.still
