@@ -177,30 +177,32 @@ class ErrorScales:
     hours: float = CURRENT_HOURS  # correlation time of the current [h]
 
 
-def next_shares(
-    shares: Floats, alike: Floats, square: Floats, covariance: Floats, hours: float
-) -> Floats:
-    """Improve the error shares (z,) of z stretches of the line by one step of Fisher scoring.
+def share_score(mean: Floats, covariance: Floats, alike: Floats) -> tuple[Floats, Floats]:
+    """Return the score and the Fisher information of the logarithms of the error shares.
 
-    The error share of a stretch is its standard error divided by its knockdown.
-
-    Parameters
-    ----------
-    shares : (z,) present error shares
-    alike : (z, z) prior correlation of the errors
-    square : (z, z) products of the estimated errors, relative to `shares`; mean over the record
-    covariance : (z, z) posterior covariance of these errors; mean over the record
-    hours : length of the record [h]
+    `mean` (n, z) and `covariance` (n, z, z) are those of the errors of z stretches of the line at n
+    times, relative to the shares; `alike` (z, z) is their prior correlation. The score (z,) and the
+    information (z, z) are sums over the times.
     """
     inverse = np.linalg.inv(alike)
-    known = inverse @ (alike - covariance)
-    slope = np.diag(inverse @ (square + covariance)) - 1.0
-    information = known * known.T + (known @ inverse) * (alike - covariance)
-    place = np.linspace(0.0, 1.0, len(shares))
+    left = alike - covariance
+    known = inverse @ left
+    score = (mean @ inverse * mean).sum(axis=0) - known.diagonal(axis1=1, axis2=2).sum(axis=0)
+    information = known * known.transpose(0, 2, 1) + (known @ inverse) * left
+    return score, information.sum(axis=0)
+
+
+def next_shares(shares: Floats, score: Floats, information: Floats, number: float) -> Floats:
+    """Improve the error shares (z,) of z stretches of the line by one step of Fisher scoring.
+
+    The error share of a stretch is its standard error divided by its knockdown. `score` and
+    `information` are those of `share_score`, averaged over the times of a record that has as much
+    information as `number` independent times.
+    """
+    place = np.arange(len(shares)) / len(shares)
     near = np.exp(-np.abs(place[:, None] - place) / SHARE_REACH)
-    prior = np.linalg.inv(ALL_SHARES**2 + EACH_SHARE**2 * near)
-    prior *= min(2.0 * LINE_HOURS / max(hours, 1e-9), 1.0)  # times close together count once
-    step = np.linalg.solve(information + prior, slope - prior @ np.log(shares / SHARE))
+    prior = np.linalg.inv(ALL_SHARES**2 + EACH_SHARE**2 * near) / number
+    step = np.linalg.solve(information + prior, score - prior @ np.log(shares / SHARE))
     step *= SHARE_STEP / max(float(np.abs(step).max()), SHARE_STEP)
     return np.asarray(np.clip(shares * np.exp(step), *SHARES), np.float64)
 
@@ -504,7 +506,7 @@ class CurrentSmoother:
         stay = np.zeros_like(self.stepped)
         noise_share = np.ones(count)
         tide, alike = np.zeros(count), self._stretches[2]
-        bent, known = np.zeros_like(alike), np.zeros_like(alike)
+        score, information = np.zeros(STRETCHES), np.zeros_like(alike)
         for each in smoothed(law):
             t, spread = each.times, each.covariance
             now[t] = each.mean
@@ -524,8 +526,8 @@ class CurrentSmoother:
             noise_share[t] += (1.0 - law.fade[t, 0] ** 2) * excess / len(steady)
             z = each.mean[:, at.share]
             tide[t] = each.mean[:, at.tide.start] ** 2 + spread[:, at.tide.start, at.tide.start]
-            bent += z.T @ z
-            known += spread[:, at.share, at.share].sum(axis=0)
+            own_score, own_information = share_score(z, spread[:, at.share, at.share], alike)
+            score, information = score + own_score, information + own_information
         begun = now[0, at.stays] ** 2 + spread[0, at.stays, at.stays].diagonal()
         wide[:, : 2 * one.u.shape[1]] /= self.alike
         square = left**2 + wide
@@ -545,8 +547,11 @@ class CurrentSmoother:
                     flag[f] = float(np.clip(flag[f] * ratio[mine].mean(), *FLAG_RANGE))
             self.scales = replace(self.scales, flag=flag)
         if turn >= SETTLED:
-            span = float(np.ptp(self.hours))
-            shares = next_shares(self.scales.share, alike, bent / count, known / count, span)
+            # errors at times close together are alike
+            number = np.clip(np.ptp(self.hours) / (2.0 * LINE_HOURS), 1.0, count)
+            shares = next_shares(
+                self.scales.share, score / count, information / count, float(number)
+            )
             self.scales = replace(self.scales, share=shares)
         if turn >= 2 and count > 1:
             hours = float(np.clip(self.scales.hours / noise_share[1:].mean(), *HOURS))
