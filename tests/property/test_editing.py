@@ -251,7 +251,8 @@ class Editor:
 def has_comments_in_brackets(text: str, refusal: str) -> bool:
     """Whether an edit is refused since it would lose a comment between entries in brackets."""
     found = re.fullmatch(
-        r"line (\d+) of the file: .* items or comments; edit the list in the text of the file", refusal
+        r"line (\d+) of the file: .* items or comments; edit the list in the text of the file",
+        refusal,
     )
     if found is None:
         return False
