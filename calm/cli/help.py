@@ -62,12 +62,9 @@ class HelpAtWidth:
 
     def __call__(self, console: Console, options: ConsoleOptions, panel: HelpPanel) -> None:
         from cyclopts.help import DefaultFormatter
-        from rich.text import Text
 
         for place, entry in enumerate(panel.entries):
-            written = getattr(entry.description, "primary_renderable", None)
-            if isinstance(written, Text):
-                entry.description.primary_renderable = Text(" ".join(written.plain.split()))
+            _rewrap(entry.description)
             if entry.choices is not None and len(entry.choices) == 1:
                 panel.entries[place] = entry.copy(metavar=entry.choices[0], choices=None)
                 continue
@@ -80,13 +77,8 @@ class HelpAtWidth:
     def render_description(self, console: Console, options: ConsoleOptions, text: Any) -> None:
         """Print the description of a command, with its paragraphs wrapped to the width."""
         from cyclopts.help import DefaultFormatter
-        from rich.text import Text
 
-        written = getattr(text, "primary_renderable", None)
-        if isinstance(written, Text):
-            paragraphs = written.plain.split("\n\n")
-            joined = "\n\n".join(" ".join(one.split()) for one in paragraphs)
-            text.primary_renderable = Text(joined)
+        _rewrap(text)
         DefaultFormatter().render_description(console, options, text)
 
     def render_usage(self, console: Console, options: ConsoleOptions, usage: Any) -> None:
@@ -96,6 +88,16 @@ class HelpAtWidth:
         known = re.compile(r"(--[\w-]+) ([A-Z]+)")
         text = known.sub(lambda m: f"{m[1]} {_VALUE_OF.get(m[1], m[2])}", str(usage))
         DefaultFormatter().render_usage(console, options, text)
+
+
+def _rewrap(text: Any) -> None:
+    """Join the lines of each paragraph of a help text, so that it is wrapped when it is printed."""
+    from rich.text import Text
+
+    written = getattr(text, "primary_renderable", None)
+    if isinstance(written, Text):
+        paragraphs = written.plain.split("\n\n")
+        text.primary_renderable = Text("\n\n".join(" ".join(one.split()) for one in paragraphs))
 
 
 def examples(command: Callable[..., object]) -> str:

@@ -124,7 +124,7 @@ def load_ahead(environments: int, drawn: bool) -> None:
     expect_many(SOLVES * environments)
     load_line_solver()
     if drawn:
-        import calm.report.check_report  # noqa: F401
+        import calm.report.check_report  # noqa: F401  (loaded before processes are forked)
         from calm.drawing.typesetting import signs
         from calm.report.html import read_templates
 

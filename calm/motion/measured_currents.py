@@ -594,8 +594,7 @@ class CurrentSmoother:
         named = dict(zip(self.names, factors, strict=True))
         count = len(named) + 1 + len(zero)
         covariance = self.common_covariance[:count, :count]
-        share = float(np.sqrt(np.square(self.scales.share).mean()))
-        return Common(named, float(datum[0]), zero + place, covariance, share)
+        return Common(named, float(datum[0]), zero + place, covariance)
 
     @cached_property
     def best(self) -> Forward:

@@ -262,13 +262,11 @@ def joined(
         tide = np.nan_to_num(tide - np.nanmean(tide))
     when = [one.time[one.false] for one in currents if one.false is not None]
     false = np.isin(time, np.concatenate(when)) if when else None
-    parts, names = (
-        np.array([c[1] for c in columns], np.int64),
-        [labels[at] for at in point.tolist()],
-    )
+    level_point = np.array([column[1] for column in columns], np.int64)
     measured = MooringMeasurements(
-        time, tuple(names), point, depth, level, parts, u, v, flag.astype(np.int8), tide, false
-    )
+        time, tuple(labels[at] for at in point.tolist()), point, depth, level, level_point, u, v,
+        flag.astype(np.int8), tide, false,
+    )  # fmt: skip
     both = (np.isfinite(u) & np.isfinite(v)).any(axis=1) & np.isfinite(depth).any(axis=1)
     if currents and not both.any():
         raise UsageError(
